@@ -1,0 +1,64 @@
+// Every option of the program, grouped as on the command line. One struct per
+// prefix; the option table in colmap_plugin/tool maps names to these members.
+#pragma once
+
+#include <string>
+
+#include "colmap_plugin/workspace/workspace.h"
+
+namespace hpm {
+
+// "--PatchMatchStereo.*": COLMAP's names, types and defaults (3.8 and 4.x).
+// Options whose meaning does not exist in this method are accepted and named
+// once in the log when they are set; see docs/options.md.
+struct PatchMatchStereoOptions {
+  int max_image_size = -1;
+  std::string gpu_index = "-1";
+  double depth_min = -1;
+  double depth_max = -1;
+  int window_radius = 5;
+  int window_step = 1;
+  double sigma_spatial = -1;
+  double sigma_color = 0.2f;
+  int num_samples = 15;
+  double ncc_sigma = 0.6f;
+  double min_triangulation_angle = 1;
+  double incident_angle_sigma = 0.9f;
+  int num_iterations = 5;
+  bool geom_consistency = true;
+  double geom_consistency_regularizer = 0.3f;
+  double geom_consistency_max_cost = 3;
+  bool filter = true;
+  double filter_min_ncc = 0.1f;
+  double filter_min_triangulation_angle = 3;
+  int filter_min_num_consistent = 2;
+  double filter_geom_consistency_max_cost = 1;
+  double cache_size = 32;  // GiB
+  bool allow_missing_files = false;
+  bool write_consistency_graph = false;
+  int num_threads = -1;
+};
+
+// "--Hpm.*": what COLMAP does not have.
+struct HpmOptions {
+  std::string method = "hpm";       // see src/engine/schedule.h
+  std::string cpu_target = "auto";  // auto, scalar, or a SIMD target of this machine
+  int num_iterations = 3;           // red/black iterations of a photometric or prior pass
+  int num_geom_iterations = 2;      // of a geometric pass
+  int num_geom_passes = 2;
+  double geom_weight = 0.1;         // lambda of the geometric term
+  double geom_max_error = 5;        // pixels, cap of the geometric term
+  int num_levels = -1;              // levels of the prior hierarchy; -1: by image size
+  bool previews = false;            // colour pictures of the maps in stereo/previews
+  bool overwrite = false;           // recompute maps that are complete
+};
+
+struct ControllerOptions {
+  WorkspaceOptions workspace;
+  std::string config_path;
+  int random_seed = 0;
+  PatchMatchStereoOptions patch_match;
+  HpmOptions hpm;
+};
+
+}  // namespace hpm

@@ -1,0 +1,37 @@
+// Depth and normal maps in COLMAP's layout: "<W>&<H>&<C>&" then little-endian
+// float32, channel by channel, row by row.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+namespace hpm {
+
+// data[(channel * height + row) * width + col]. Depth maps have one channel
+// (z in the camera frame, model units, 0 = none), normal maps three (unit,
+// camera frame, toward the camera, 0 = none).
+struct Map {
+  int width = 0;
+  int height = 0;
+  int channels = 0;
+  std::vector<float> data;
+};
+
+struct MapHeader {
+  int width = 0;
+  int height = 0;
+  int channels = 0;
+};
+
+// Reads and checks the header: positive sizes and a file length of exactly
+// header + 4*W*H*C bytes. Throws Error(kBadInput).
+MapHeader ReadMapHeader(const std::filesystem::path& path);
+
+// As ReadMapHeader, then the values; allocates only after the length is checked.
+Map ReadMap(const std::filesystem::path& path);
+
+// Atomic: writes a temporary file beside `path`, then renames (see atomic_file.h).
+// Throws Error(kFailure) on non-finite values, Error(kOutOfResources) on a full disk.
+void WriteMap(const std::filesystem::path& path, const Map& map);
+
+}  // namespace hpm

@@ -1,0 +1,26 @@
+// Cooperative cancellation: a signal handler sets the token, workers poll it
+// between tiles and rows.
+#pragma once
+
+#include <atomic>
+
+#include "src/base/error.h"
+
+namespace hpm {
+
+class CancelToken {
+ public:
+  // Async-signal-safe.
+  void Cancel() { cancelled_.store(true, std::memory_order_relaxed); }
+  bool cancelled() const { return cancelled_.load(std::memory_order_relaxed); }
+
+  // Throws Error(kInterrupted) once Cancel() was called.
+  void ThrowIfCancelled() const {
+    if (cancelled()) throw Error(ErrorCode::kInterrupted, "interrupted");
+  }
+
+ private:
+  std::atomic<bool> cancelled_{false};
+};
+
+}  // namespace hpm
