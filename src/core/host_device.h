@@ -4,6 +4,8 @@
 
 #if defined(__CUDACC__)
 #define HPM_HD __host__ __device__ inline
+#define HPM_HD_MEMBER __host__ __device__
 #else
 #define HPM_HD inline
+#define HPM_HD_MEMBER
 #endif

@@ -1,0 +1,117 @@
+// Candidate hypotheses of a visit: in each region the pixel of smallest stored
+// cost; regions whose candidate convinces no view grow (NESP, paper section 3.1;
+// specification sections 5.2 and 5.3).
+#pragma once
+
+#include <math.h>
+
+#include "src/core/pixel_state.h"
+#include "src/core/visit.h"
+
+namespace hpm {
+
+struct Candidates {
+  Plane plane[kNumRegions];
+  uint32_t exists;  // bit i: region i has a sample inside the image
+  float matrix[kNumRegions * kMaxViews];  // [region * num_views + view]
+};
+
+// Best sample among offsets [begin, end) of a region, -1 if none is inside the
+// image or better than *best_cost. A walk ends at the border.
+HPM_HD int BestSample(const SamplingPattern& pattern,
+                      const PixelState& state,
+                      int region,
+                      int begin,
+                      int end,
+                      int col,
+                      int row,
+                      float* best_cost) {
+  int best = -1;
+  for (int k = begin; k < end; ++k) {
+    const int c = col + pattern.dcol[region][k];
+    const int r = row + pattern.drow[region][k];
+    // The V of the local pattern alternates between its arms: one of them may
+    // leave the image before the other.
+    if (c < 0 || r < 0 || c >= state.width || r >= state.height) continue;
+    const int at = r * state.width + c;
+    if (state.costs[at] < *best_cost) {
+      *best_cost = state.costs[at];
+      best = at;
+    }
+  }
+  return best;
+}
+
+// The paper's test whether a region must grow: fewer than one view below the
+// threshold, or more than two views above the bad cost.
+HPM_HD bool MustExtend(const float* costs, int num_views, int iteration, int extension) {
+  constexpr int kNumGood = 1, kNumBad = 2;
+  const float good_cost =
+      0.8f * expf(-static_cast<float>(iteration * iteration * (3 - extension)) / 90.0f);
+  int num_good = 0, num_bad = 0;
+  for (int j = 0; j < num_views; ++j) {
+    num_good += costs[j] < good_cost;
+    num_bad += costs[j] > kBadCost;
+  }
+  return num_good < kNumGood || num_bad > kNumBad;
+}
+
+template <class Cost>
+HPM_HD void CollectCandidates(const VisitParams& params,
+                              const SamplingPattern& pattern,
+                              const PixelState& state,
+                              const Cost& cost,
+                              int iteration,
+                              int col,
+                              int row,
+                              Candidates* candidates) {
+  float best_cost[kNumRegions];
+  int count[kNumRegions];
+  uint8_t batch_region[kNumRegions];
+  Plane batch[kNumRegions];
+  int batch_size = 0;
+  candidates->exists = 0;
+  for (int i = 0; i < kNumRegions; ++i) {
+    best_cost[i] = 1e30f;
+    count[i] = pattern.num_base[i];
+    const int best = BestSample(pattern, state, i, 0, count[i], col, row, &best_cost[i]);
+    if (best < 0) continue;
+    candidates->exists |= 1u << i;
+    candidates->plane[i] = state.planes[best];
+    batch_region[batch_size] = static_cast<uint8_t>(i);
+    batch[batch_size++] = state.planes[best];
+  }
+  uint8_t views[kMaxViews];
+  for (int j = 0; j < params.num_views; ++j) views[j] = static_cast<uint8_t>(j);
+
+  float costs[kNumRegions * kMaxViews];
+  uint32_t growing = candidates->exists;
+  for (int extension = 0;; ++extension) {
+    if (batch_size > 0) cost.Photometric(batch, batch_size, views, params.num_views, costs);
+    for (int b = 0; b < batch_size; ++b) {
+      for (int j = 0; j < params.num_views; ++j) {
+        candidates->matrix[batch_region[b] * params.num_views + j] =
+            costs[b * params.num_views + j];
+      }
+    }
+    if (extension == pattern.max_extensions) break;
+    batch_size = 0;
+    for (int i = 0; i < kNumRegions; ++i) {
+      if (!(growing >> i & 1)) continue;
+      if (!MustExtend(&candidates->matrix[i * params.num_views], params.num_views, iteration,
+                      extension)) {
+        growing &= ~(1u << i);
+        continue;
+      }
+      const int best = BestSample(pattern, state, i, count[i], 2 * count[i], col, row, &best_cost[i]);
+      count[i] *= 2;
+      if (best < 0) continue;
+      candidates->plane[i] = state.planes[best];
+      batch_region[batch_size] = static_cast<uint8_t>(i);
+      batch[batch_size++] = state.planes[best];
+    }
+    if (growing == 0) break;
+  }
+}
+
+}  // namespace hpm

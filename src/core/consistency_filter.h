@@ -1,0 +1,51 @@
+// COLMAP's filter of finished maps (contract 3.4): a source counts if it sees
+// the surface from its front, under a sufficient angle, with a sufficient NCC
+// and, after a geometric pass, with a small reprojection error.
+#pragma once
+
+#include "src/core/visit.h"
+
+namespace hpm {
+
+struct FilterParams {
+  float min_ncc;
+  float min_triangulation_angle;  // radians
+  float max_reprojection_error;   // pixels
+  int min_num_consistent;
+};
+
+// Bit j: source view j is consistent. src_centers: camera centres in the
+// reference camera frame.
+template <class Cost>
+HPM_HD uint32_t ConsistentViews(const VisitParams& params,
+                                const FilterParams& filter,
+                                const Vec3f* src_centers,
+                                const Cost& cost,
+                                const Plane& plane,
+                                int col,
+                                int row) {
+  const Vec3f ray = RayAt(params.ref, static_cast<float>(col), static_cast<float>(row));
+  const Vec3f point = (-plane.distance / Dot(plane.normal, ray)) * ray;
+  const Vec3f to_ref = -Normalized(point);
+  const float max_cos = cosf(filter.min_triangulation_angle);
+  uint8_t views[kMaxViews];
+  int num_views = 0;
+  for (int j = 0; j < params.num_views; ++j) {
+    const Vec3f to_src = src_centers[j] - point;
+    const float distance = Norm(to_src);
+    if (!(distance > 0) || Dot(to_src, plane.normal) <= 0) continue;
+    if (Dot(to_src, to_ref) > max_cos * distance) continue;
+    if (params.geometric && cost.GeometricError(plane, j) > filter.max_reprojection_error) continue;
+    views[num_views++] = static_cast<uint8_t>(j);
+  }
+  uint32_t mask = 0;
+  if (num_views == 0) return mask;
+  float costs[kMaxViews];
+  cost.Photometric(&plane, 1, views, num_views, costs);
+  for (int k = 0; k < num_views; ++k) {
+    if (1 - costs[k] >= filter.min_ncc) mask |= 1u << views[k];
+  }
+  return mask;
+}
+
+}  // namespace hpm

@@ -1,0 +1,78 @@
+// Start of a run at one pixel (specification section 2.6).
+#pragma once
+
+#include "src/core/pixel_state.h"
+#include "src/core/refinement.h"
+#include "src/core/visit.h"
+
+namespace hpm {
+
+enum class StartFrom {
+  kRandom,   // random depth and normal
+  kCurrent,  // the stored hypothesis
+  kPrior,    // the prior, slightly perturbed, where there is one and the stored
+             // cost is not convincing; else the stored hypothesis
+};
+
+constexpr float kConvincingCost = 0.1f;
+constexpr float kPriorDepthSpread = 0.06f;    // relative
+constexpr float kPriorNormalSpread = 0.0942478f;  // radians per axis, 0.03 pi
+
+// Mean of the best kNumInitialViews costs below kMaxCost and the mask of views
+// with such a cost; kMaxCost and an empty mask if there is none.
+HPM_HD float BestViewsCost(const float* costs, int num_views, uint32_t* mask) {
+  float best[kNumInitialViews];
+  int num_best = 0;
+  for (int j = 0; j < num_views; ++j) {
+    if (!(costs[j] < kMaxCost)) continue;
+    int at = num_best < kNumInitialViews ? num_best++ : kNumInitialViews;
+    if (at == kNumInitialViews) {
+      if (costs[j] >= best[kNumInitialViews - 1]) continue;
+      at = kNumInitialViews - 1;
+    }
+    for (; at > 0 && best[at - 1] > costs[j]; --at) best[at] = best[at - 1];
+    best[at] = costs[j];
+  }
+  *mask = 0;
+  if (num_best == 0) return kMaxCost;
+  float sum = 0;
+  for (int k = 0; k < num_best; ++k) sum += best[k];
+  for (int j = 0; j < num_views; ++j) {
+    if (costs[j] <= best[num_best - 1]) *mask |= 1u << j;
+  }
+  return sum / static_cast<float>(num_best);
+}
+
+template <class Cost>
+HPM_HD void InitializePixel(const VisitParams& params,
+                            const PixelState& state,
+                            StartFrom start,
+                            const Cost& cost,
+                            Rng* rng,
+                            int col,
+                            int row) {
+  const int at = row * state.width + col;
+  const Vec3f ray = RayAt(params.ref, static_cast<float>(col), static_cast<float>(row));
+  Plane plane = state.planes[at];
+  const bool has_plane = plane.distance > 0;
+  if (start == StartFrom::kPrior && state.priors != nullptr && state.priors[at].distance > 0 &&
+      !(has_plane && state.costs[at] < kConvincingCost)) {
+    const Plane& prior = state.priors[at];
+    plane.normal = PerturbNormal(prior.normal, ray, kPriorNormalSpread, rng);
+    const float depth = -prior.distance / Dot(prior.normal, ray) *
+                        rng->Uniform(1 - kPriorDepthSpread, 1 + kPriorDepthSpread);
+    plane.distance = -depth * Dot(plane.normal, ray);
+  } else if (start == StartFrom::kRandom || !has_plane) {
+    plane.normal = RandomNormal(ray, rng);
+    plane.distance =
+        -rng->Uniform(params.depth_min, params.depth_max) * Dot(plane.normal, ray);
+  }
+  uint8_t views[kMaxViews];
+  for (int j = 0; j < params.num_views; ++j) views[j] = static_cast<uint8_t>(j);
+  float costs[kMaxViews];
+  cost.Photometric(&plane, 1, views, params.num_views, costs);
+  state.planes[at] = plane;
+  state.costs[at] = BestViewsCost(costs, params.num_views, &state.masks[at]);
+}
+
+}  // namespace hpm

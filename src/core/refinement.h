@@ -1,0 +1,56 @@
+// New hypotheses around the current one (specification section 6; HPM-MVS takes
+// the seven combinations of current, perturbed and random depth and normal).
+#pragma once
+
+#include <math.h>
+
+#include "src/core/plane.h"
+#include "src/core/rng.h"
+
+namespace hpm {
+
+constexpr int kNumRefined = 6;
+
+// Uniform on the hemisphere that faces the camera along `ray`.
+HPM_HD Vec3f RandomNormal(const Vec3f& ray, Rng* rng) {
+  const float z = rng->Uniform(-1.0f, 1.0f);
+  const float phi = rng->Uniform(0.0f, 6.28318531f);
+  const float s = sqrtf(fmaxf(0.0f, 1.0f - z * z));
+  const Vec3f n = {s * cosf(phi), s * sinf(phi), z};
+  return Dot(n, ray) > 0 ? -n : n;
+}
+
+// Rotates n by three independent angles in +-max_angle (radians) about x, y and
+// z; keeps n if the result would face away.
+HPM_HD Vec3f PerturbNormal(const Vec3f& n, const Vec3f& ray, float max_angle, Rng* rng) {
+  const float a = rng->Uniform(-max_angle, max_angle);
+  const float b = rng->Uniform(-max_angle, max_angle);
+  const float c = rng->Uniform(-max_angle, max_angle);
+  const float sa = sinf(a), ca = cosf(a), sb = sinf(b), cb = cosf(b), sc = sinf(c), cc = cosf(c);
+  const Vec3f x = {n.x, ca * n.y - sa * n.z, sa * n.y + ca * n.z};
+  const Vec3f y = {cb * x.x + sb * x.z, x.y, -sb * x.x + cb * x.z};
+  const Vec3f z = Normalized({cc * y.x - sc * y.y, sc * y.x + cc * y.y, y.z});
+  return Dot(z, ray) < 0 ? z : n;
+}
+
+// The six hypotheses beside the current one, in the order of the specification:
+// (z_r,n) (z,n_r) (z_r,n_r) (z,n_p) (z_p,n) (z_p,n_p).
+HPM_HD void CombineHypotheses(const Camera& camera,
+                              float col,
+                              float row,
+                              float z,
+                              const Vec3f& n,
+                              float z_random,
+                              const Vec3f& n_random,
+                              float z_perturbed,
+                              const Vec3f& n_perturbed,
+                              Plane planes[kNumRefined]) {
+  planes[0] = PlaneFromDepth(camera, col, row, z_random, n);
+  planes[1] = PlaneFromDepth(camera, col, row, z, n_random);
+  planes[2] = PlaneFromDepth(camera, col, row, z_random, n_random);
+  planes[3] = PlaneFromDepth(camera, col, row, z, n_perturbed);
+  planes[4] = PlaneFromDepth(camera, col, row, z_perturbed, n);
+  planes[5] = PlaneFromDepth(camera, col, row, z_perturbed, n_perturbed);
+}
+
+}  // namespace hpm

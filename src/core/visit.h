@@ -1,0 +1,59 @@
+// What a pixel visit knows beside the state, and what it asks of a backend.
+//
+// A backend supplies a Cost object per visited pixel with
+//   void Photometric(const Plane* planes, int num_planes,
+//                    const uint8_t* views, int num_views, float* costs) const;
+//     costs[i * num_views + k] = matching cost of planes[i] in view views[k];
+//     a batch, so that the backend can fill its lanes;
+//   float GeometricError(const Plane& plane, int view) const;
+//     reprojection error in pixels, capped (geometric passes only).
+#pragma once
+
+#include <stdint.h>
+
+#include "src/core/checkerboard.h"
+#include "src/core/geometric_term.h"
+#include "src/core/prior_term.h"
+#include "src/core/view_selection.h"
+
+namespace hpm {
+
+struct VisitParams {
+  Camera ref;
+  int num_views;
+  float depth_min, depth_max;  // model units; hypotheses outside are not accepted
+  int num_view_draws;          // 15
+  float depth_perturbation;    // relative, 0.02
+  float normal_perturbation;   // radians per axis, 0.01 pi
+  bool geometric;              // add the geometric term
+  GeometricTerm geometric_term;
+  PriorTerm prior_term;
+};
+
+constexpr int kNumInitialViews = 4;  // k of the best-k mean at initialisation (paper section 3)
+
+// Costs of several planes over the drawn views, weighted; the batch goes through
+// the backend at once.
+template <class Cost>
+HPM_HD void WeightedCosts(const VisitParams& params,
+                          const Cost& cost,
+                          const ViewWeights& weights,
+                          const Plane* planes,
+                          int num_planes,
+                          float* result) {
+  float costs[kNumRegions * kMaxViews];
+  cost.Photometric(planes, num_planes, weights.view, weights.num_views, costs);
+  for (int i = 0; i < num_planes; ++i) {
+    float sum = 0;
+    for (int k = 0; k < weights.num_views; ++k) {
+      float c = costs[i * weights.num_views + k];
+      if (params.geometric) {
+        c += params.geometric_term.weight * cost.GeometricError(planes[i], weights.view[k]);
+      }
+      sum += weights.weight[k] * c;
+    }
+    result[i] = sum / weights.weight_sum;
+  }
+}
+
+}  // namespace hpm
