@@ -3,6 +3,7 @@
 
 #include <stdint.h>
 
+#include "src/core/limits.h"
 #include "src/core/plane.h"
 
 namespace hpm {

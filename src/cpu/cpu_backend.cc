@@ -1,0 +1,164 @@
+#include "src/cpu/cpu_backend.h"
+
+#include <atomic>
+#include <optional>
+
+#include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include "src/core/initialize_pixel.h"
+#include "src/core/median_filter.h"
+#include "src/core/update_pixel.h"
+#include "src/cpu/cpu_views.h"
+
+namespace hpm {
+namespace {
+
+constexpr int kRowsPerTask = 4;
+
+class CpuBackend : public Backend {
+ public:
+  CpuBackend(CpuTarget target, int num_threads)
+      : target_(std::move(target)),
+        arena_(num_threads > 0 ? num_threads : tbb::this_task_arena::max_concurrency()) {}
+
+  std::string Name() const override {
+    return fmt::format("cpu {}, {} threads", target_.name, arena_.max_concurrency());
+  }
+
+  uint64_t MemoryNeeded(int width, int height, int num_srcs, bool geometric) const override {
+    const uint64_t pixels = static_cast<uint64_t>(width) * height;
+    const uint64_t state = sizeof(Plane) * 2 + sizeof(float) + sizeof(uint32_t);
+    return CpuViews::MemoryNeeded(width, height, num_srcs) + pixels * state +
+           (geometric ? pixels * sizeof(float) * num_srcs : 0);
+  }
+
+  void SetViews(const ViewSet& views, const MethodParams& params) override {
+    views_.reset();  // free the images of the problem before first
+    views_.emplace(views, params);
+    num_evaluations_ = 0;
+    random_key_ = views.random_key;
+    visit_ = {};
+    visit_.ref = views.ref.camera;
+    visit_.num_views = static_cast<int>(views.srcs.size());
+    visit_.depth_min = views.depth_min;
+    visit_.depth_max = views.depth_max;
+    visit_.num_view_draws = params.num_view_draws;
+    visit_.depth_perturbation = params.depth_perturbation;
+    visit_.normal_perturbation = params.normal_perturbation;
+    visit_.geometric_term = {params.geom_weight, params.geom_max_error};
+    visit_.prior_term = {params.prior_gamma, params.prior_beta,
+                         params.prior_depth_share * (views.depth_max - views.depth_min),
+                         params.prior_angle};
+  }
+
+  void Run(const Pass& pass,
+           const SamplingPattern& pattern,
+           HypothesisMap* map,
+           const RunControl& control) override {
+    const PixelState state = map->View();
+    VisitParams params = visit_;
+    params.geometric = pass.kind == PassKind::kGeometric;
+    const uint64_t pass_key = CombineBits(random_key_, pass.id);
+    const int num_steps = 2 + 2 * pass.num_iterations;  // two half-sweeps each
+    int step = 0;
+    const auto finish_step = [&] {
+      if (control.progress) control.progress(static_cast<double>(++step) / num_steps);
+    };
+
+    const uint64_t start_key = CombineBits(pass_key, 0);
+    for (int color = 0; color < 2; ++color) {
+      HalfSweep(state, color, control, [&](int col, int row) {
+        const CpuPixelCost cost = CostAt(col, row);
+        Rng rng(start_key, col, row);
+        InitializePixel(params, state, pass.start, cost, &rng, col, row);
+        return cost.num_evaluations();
+      });
+      finish_step();
+    }
+    for (int iteration = 0; iteration < pass.num_iterations; ++iteration) {
+      const uint64_t key = CombineBits(pass_key, 1 + iteration);
+      for (int color = 0; color < 2; ++color) {
+        HalfSweep(state, color, control, [&](int col, int row) {
+          const CpuPixelCost cost = CostAt(col, row);
+          Rng rng(key, col, row);
+          UpdatePixel(params, pattern, state, cost, &rng, iteration, col, row);
+          return cost.num_evaluations();
+        });
+        finish_step();
+      }
+    }
+    for (int color = 0; color < 2; ++color) {
+      HalfSweep(state, color, control, [&](int col, int row) {
+        MedianFilterPixel(params.ref, state, col, row);
+        return uint64_t{0};
+      });
+    }
+  }
+
+  std::vector<uint32_t> ConsistentViews(const HypothesisMap& map,
+                                        const FilterParams& filter,
+                                        bool geometric,
+                                        const RunControl& control) override {
+    VisitParams params = visit_;
+    params.geometric = geometric;
+    std::vector<uint32_t> consistent(map.planes.size());
+    const PixelState size = {map.width, map.height, nullptr, nullptr, nullptr, nullptr};
+    for (int color = 0; color < 2; ++color) {
+      HalfSweep(size, color, control, [&](int col, int row) {
+        const size_t at = static_cast<size_t>(row) * map.width + col;
+        const CpuPixelCost cost = CostAt(col, row);
+        consistent[at] = hpm::ConsistentViews(params, filter, views_->src_centers().data(), cost,
+                                              map.planes[at], col, row);
+        return cost.num_evaluations();
+      });
+    }
+    return consistent;
+  }
+
+  uint64_t num_cost_evaluations() const override { return num_evaluations_; }
+
+ private:
+  CpuPixelCost CostAt(int col, int row) const {
+    return {*views_, target_.match_cost, visit_.geometric_term.max_error, col, row};
+  }
+
+  // Calls visit(col, row) for all pixels of one colour; it returns the number of
+  // cost evaluations. Bands of rows run in parallel.
+  template <class Visit>
+  void HalfSweep(const PixelState& state, int color, const RunControl& control, const Visit& visit) {
+    arena_.execute([&] {
+      tbb::parallel_for(
+          tbb::blocked_range<int>(0, state.height, kRowsPerTask),
+          [&](const tbb::blocked_range<int>& rows) {
+            uint64_t num_evaluations = 0;
+            for (int row = rows.begin(); row < rows.end(); ++row) {
+              if (control.cancel->cancelled()) return;
+              for (int col = (row + color) % 2; col < state.width; col += 2) {
+                num_evaluations += visit(col, row);
+              }
+            }
+            num_evaluations_ += num_evaluations;
+          },
+          tbb::simple_partitioner());
+    });
+    control.cancel->ThrowIfCancelled();
+  }
+
+  CpuTarget target_;
+  tbb::task_arena arena_;
+  std::optional<CpuViews> views_;
+  VisitParams visit_;
+  uint64_t random_key_ = 0;
+  std::atomic<uint64_t> num_evaluations_{0};
+};
+
+}  // namespace
+
+std::unique_ptr<Backend> MakeCpuBackend(const std::string& target, int num_threads) {
+  return std::make_unique<CpuBackend>(FindCpuTarget(target), num_threads);
+}
+
+}  // namespace hpm

@@ -1,0 +1,51 @@
+// The matching cost of src/core/match_cost.h for many (plane, view) pairs at
+// once, one pair per SIMD lane, with runtime dispatch over the machine's targets.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "src/core/match_cost.h"
+
+namespace hpm {
+
+// The source views of one problem, as structure of arrays over views.
+struct MatchViews {
+  Camera ref;
+  PatchShape shape;
+  int num_views = 0;
+  const uint32_t* texels = nullptr;  // base of all images, see texel_image.h
+  // Per view; M and v of ViewWarp.
+  alignas(64) float M[9][kMaxViews];
+  alignas(64) float v[3][kMaxViews];
+  alignas(64) float max_u[kMaxViews];  // width - 1
+  alignas(64) float max_v[kMaxViews];  // height - 1
+  alignas(64) int32_t stride[kMaxViews];
+  alignas(64) int32_t offset[kMaxViews];  // of the image in `texels`, in texels
+};
+
+// Computes costs[i * num_src + k] of planes[i] in view views[k] at pixel (col, row).
+using MatchCostFunction = void (*)(const MatchViews& match,
+                                   const RefPatch& patch,
+                                   int col,
+                                   int row,
+                                   const Plane* planes,
+                                   int num_planes,
+                                   const uint8_t* views,
+                                   int num_views,
+                                   float* costs);
+
+struct CpuTarget {
+  std::string name;  // "scalar", "sse4", "avx2", "avx3", "neon", ...
+  MatchCostFunction match_cost = nullptr;
+};
+
+// All targets that this binary holds and this machine can run, best first,
+// "scalar" (the code of src/core) last.
+std::vector<CpuTarget> CpuTargets();
+
+// `name` = "auto" gives the best one. Throws Error(kUsage) listing the names.
+CpuTarget FindCpuTarget(const std::string& name);
+
+}  // namespace hpm

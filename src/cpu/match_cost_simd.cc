@@ -1,0 +1,301 @@
+// Compiled once per SIMD target (Highway); see match_cost.h.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "src/cpu/match_cost_simd.cc"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "src/cpu/match_cost.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace hpm {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using DF = hn::ScalableTag<float>;
+using DI = hn::RebindToSigned<DF>;
+using VF = hn::Vec<DF>;
+using VI = hn::Vec<DI>;
+
+// Room for the last, partly filled vector.
+constexpr int kMaxLanes = 16;
+constexpr int kMaxPairs = kNumRegions * kMaxViews + kMaxLanes;
+
+// The warp of each pair, one lane per pair, pair = plane * num_views + view.
+struct Pairs {
+  alignas(64) float origin[3][kMaxPairs];
+  alignas(64) float dcol[3][kMaxPairs];
+  alignas(64) float drow[3][kMaxPairs];
+  alignas(64) float max_u[kMaxPairs];
+  alignas(64) float max_v[kMaxPairs];
+  alignas(64) int32_t stride[kMaxPairs];
+  alignas(64) int32_t offset[kMaxPairs];
+};
+
+// Constants of the chosen views, gathered into consecutive lanes.
+struct Chosen {
+  alignas(64) float origin[3][kMaxViews + kMaxLanes];  // M (col, row, 1)
+  alignas(64) float dcol[3][kMaxViews + kMaxLanes];    // first column of M
+  alignas(64) float drow[3][kMaxViews + kMaxLanes];    // second column of M
+  alignas(64) float v[3][kMaxViews + kMaxLanes];
+};
+
+HWY_INLINE void FillPairs(const MatchViews& match,
+                          float col,
+                          float row,
+                          const Plane* planes,
+                          int num_planes,
+                          const uint8_t* views,
+                          int num_views,
+                          Pairs* pairs) {
+  const DF df;
+  const int lanes = static_cast<int>(hn::Lanes(df));
+  Chosen chosen;
+  for (int k = 0; k < num_views; ++k) {
+    const int view = views[k];
+    for (int i = 0; i < 3; ++i) {
+      const float a = match.M[3 * i][view], b = match.M[3 * i + 1][view];
+      chosen.origin[i][k] = a * col + b * row + match.M[3 * i + 2][view];
+      chosen.dcol[i][k] = a;
+      chosen.drow[i][k] = b;
+      chosen.v[i][k] = match.v[i][view];
+    }
+    for (int p = 0; p < num_planes; ++p) {
+      const int pair = p * num_views + k;
+      pairs->max_u[pair] = match.max_u[view];
+      pairs->max_v[pair] = match.max_v[view];
+      pairs->stride[pair] = match.stride[view];
+      pairs->offset[pair] = match.offset[view];
+    }
+  }
+  // A vector store past the views of one plane is overwritten by the next plane.
+  for (int p = 0; p < num_planes; ++p) {
+    const PlaneSlope m = SlopeOf(match.ref, planes[p]);
+    const VF m_col = hn::Set(df, m.col);
+    const VF m_row = hn::Set(df, m.row);
+    const VF m_here = hn::Set(df, m.col * col + m.row * row + m.constant);
+    for (int k = 0; k < num_views; k += lanes) {
+      const int pair = p * num_views + k;
+      for (int i = 0; i < 3; ++i) {
+        const VF v = hn::Load(df, chosen.v[i] + k);
+        hn::StoreU(hn::NegMulAdd(m_here, v, hn::Load(df, chosen.origin[i] + k)), df,
+                   pairs->origin[i] + pair);
+        hn::StoreU(hn::NegMulAdd(m_col, v, hn::Load(df, chosen.dcol[i] + k)), df,
+                   pairs->dcol[i] + pair);
+        hn::StoreU(hn::NegMulAdd(m_row, v, hn::Load(df, chosen.drow[i] + k)), df,
+                   pairs->drow[i] + pair);
+      }
+    }
+  }
+}
+
+// Costs of one vector of pairs, from `first` on.
+HWY_INLINE VF
+PairCosts(const MatchViews& match, const RefPatch& patch, const Pairs& pairs, int first) {
+  const DF df;
+  const DI di;
+  const VF zero = hn::Zero(df);
+  const VF one = hn::Set(df, 1.0f);
+  const VF half = hn::Set(df, 0.5f);
+  const VF max_u = hn::Load(df, pairs.max_u + first);
+  const VF max_v = hn::Load(df, pairs.max_v + first);
+  const VI stride = hn::Load(di, pairs.stride + first);
+  const VI offset = hn::Load(di, pairs.offset + first);
+  VF origin[3], dcol[3], drow[3];
+  for (int i = 0; i < 3; ++i) {
+    origin[i] = hn::Load(df, pairs.origin[i] + first);
+    dcol[i] = hn::Load(df, pairs.dcol[i] + first);
+    drow[i] = hn::Load(df, pairs.drow[i] + first);
+  }
+
+  // Visibility, as IsVisible(). NaN compares false, hence invisible.
+  const VF radius = hn::Set(df, static_cast<float>(match.shape.offset[kPatchAxis - 1]));
+  const VF nearest =
+      hn::NegMulAdd(radius, hn::Add(hn::Abs(dcol[2]), hn::Abs(drow[2])), origin[2]);
+  const VF u0 = hn::Div(origin[0], origin[2]);
+  const VF v0 = hn::Div(origin[1], origin[2]);
+  const VF low = hn::Neg(half);
+  auto visible = hn::And(hn::Gt(nearest, zero), hn::And(hn::Ge(u0, low), hn::Ge(v0, low)));
+  visible = hn::And(visible, hn::And(hn::Le(u0, hn::Add(max_u, half)),
+                                     hn::Le(v0, hn::Add(max_v, half))));
+  const VF worst = hn::Set(df, kMaxCost);
+  if (hn::AllFalse(df, visible)) return worst;
+  // Invisible lanes go along on a harmless position.
+  for (int i = 0; i < 3; ++i) {
+    origin[i] = hn::IfThenElse(visible, origin[i], one);
+    dcol[i] = hn::IfThenElseZero(visible, dcol[i]);
+    drow[i] = hn::IfThenElseZero(visible, drow[i]);
+  }
+
+  const VI byte = hn::Set(di, 255);
+  const VF center = hn::Set(df, patch.center);
+  const int32_t* texels = reinterpret_cast<const int32_t*>(match.texels);
+  VF sum_s = zero, sum_ss = zero, sum_rs = zero;
+  for (int j = 0; j < kPatchAxis; ++j) {
+    const VF dj = hn::Set(df, static_cast<float>(match.shape.offset[j]));
+    const VF row_x = hn::MulAdd(dj, drow[0], origin[0]);
+    const VF row_y = hn::MulAdd(dj, drow[1], origin[1]);
+    const VF row_z = hn::MulAdd(dj, drow[2], origin[2]);
+    for (int i = 0; i < kPatchAxis; ++i) {
+      const VF d = hn::Set(df, static_cast<float>(match.shape.offset[i]));
+      const VF inv_z = hn::Div(one, hn::MulAdd(d, dcol[2], row_z));
+      VF u = hn::Mul(hn::MulAdd(d, dcol[0], row_x), inv_z);
+      VF v = hn::Mul(hn::MulAdd(d, dcol[1], row_y), inv_z);
+      u = hn::Min(hn::Max(u, zero), max_u);
+      v = hn::Min(hn::Max(v, zero), max_v);
+      const VI iu = hn::ConvertTo(di, u);
+      const VI iv = hn::ConvertTo(di, v);
+      const VF fu = hn::Sub(u, hn::ConvertTo(df, iu));
+      const VF fv = hn::Sub(v, hn::ConvertTo(df, iv));
+      const VI index = hn::Add(hn::Add(hn::Mul(iv, stride), iu), offset);
+      const VI texel = hn::GatherIndex(di, texels, index);
+      const VF p00 = hn::ConvertTo(df, hn::And(texel, byte));
+      const VF p01 = hn::ConvertTo(df, hn::And(hn::ShiftRight<8>(texel), byte));
+      const VF p10 = hn::ConvertTo(df, hn::And(hn::ShiftRight<16>(texel), byte));
+      const VF p11 = hn::ConvertTo(df, hn::And(hn::ShiftRight<24>(texel), byte));
+      const VF top = hn::MulAdd(fu, hn::Sub(p01, p00), p00);
+      const VF bottom = hn::MulAdd(fu, hn::Sub(p11, p10), p10);
+      const VF s = hn::Sub(hn::MulAdd(fv, hn::Sub(bottom, top), top), center);
+      const int k = j * kPatchAxis + i;
+      const VF ws = hn::Mul(hn::Set(df, patch.weight[k]), s);
+      sum_s = hn::Add(sum_s, ws);
+      sum_ss = hn::MulAdd(ws, s, sum_ss);
+      sum_rs = hn::MulAdd(hn::Set(df, patch.weighted[k]), s, sum_rs);
+    }
+  }
+  const VF min_variance = hn::Set(df, kMinVariance);
+  const VF variance = hn::NegMulAdd(sum_s, sum_s, sum_ss);
+  const VF covariance = hn::NegMulAdd(hn::Set(df, patch.mean), sum_s, sum_rs);
+  const VF scale =
+      hn::Sqrt(hn::Mul(hn::Set(df, patch.variance), hn::Max(variance, min_variance)));
+  const VF cost = hn::Min(hn::Max(hn::Sub(one, hn::Div(covariance, scale)), zero), worst);
+  return hn::IfThenElse(hn::And(visible, hn::Ge(variance, min_variance)), cost, worst);
+}
+
+void MatchCosts(const MatchViews& match,
+                const RefPatch& patch,
+                int col,
+                int row,
+                const Plane* planes,
+                int num_planes,
+                const uint8_t* views,
+                int num_views,
+                float* costs) {
+  const DF df;
+  const int lanes = static_cast<int>(hn::Lanes(df));
+  const int num_pairs = num_planes * num_views;
+  if (patch.variance < kMinVariance) {
+    for (int i = 0; i < num_pairs; ++i) costs[i] = kMaxCost;
+    return;
+  }
+  Pairs pairs;
+  FillPairs(match, static_cast<float>(col), static_cast<float>(row), planes, num_planes, views,
+            num_views, &pairs);
+  // Lanes behind the last pair: a copy of nothing, seen by no camera.
+  for (int pair = num_pairs; pair % lanes != 0; ++pair) {
+    pairs.origin[2][pair] = -1;
+    pairs.dcol[2][pair] = pairs.drow[2][pair] = 0;
+    pairs.max_u[pair] = pairs.max_v[pair] = 0;
+    pairs.stride[pair] = pairs.offset[pair] = 0;
+  }
+  alignas(64) float last[kMaxLanes];
+  for (int first = 0; first < num_pairs; first += lanes) {
+    const VF cost = PairCosts(match, patch, pairs, first);
+    if (first + lanes <= num_pairs) {
+      hn::StoreU(cost, df, costs + first);
+    } else {
+      hn::Store(cost, df, last);
+      for (int i = first; i < num_pairs; ++i) costs[i] = last[i - first];
+    }
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace hpm
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+#include <algorithm>
+#include <cctype>
+#include <iterator>
+
+#include <hwy/targets.h>
+
+#include "src/base/error.h"
+
+namespace hpm {
+namespace {
+
+HWY_EXPORT(MatchCosts);
+
+// The code of src/core, one pair at a time.
+void ScalarMatchCosts(const MatchViews& match,
+                      const RefPatch& patch,
+                      int col,
+                      int row,
+                      const Plane* planes,
+                      int num_planes,
+                      const uint8_t* views,
+                      int num_views,
+                      float* costs) {
+  for (int p = 0; p < num_planes; ++p) {
+    const PlaneSlope slope = SlopeOf(match.ref, planes[p]);
+    for (int k = 0; k < num_views; ++k) {
+      const int view = views[k];
+      ViewWarp warp;
+      for (int i = 0; i < 9; ++i) warp.M.m[i] = match.M[i][view];
+      warp.v = {match.v[0][view], match.v[1][view], match.v[2][view]};
+      const uint32_t* texels = match.texels + match.offset[view];
+      const auto sample = [&](float u, float v) {
+        const float cu = Clamp(u, 0.0f, match.max_u[view]);
+        const float cv = Clamp(v, 0.0f, match.max_v[view]);
+        const int iu = static_cast<int>(cu), iv = static_cast<int>(cv);
+        const float fu = cu - static_cast<float>(iu), fv = cv - static_cast<float>(iv);
+        const uint32_t texel = texels[static_cast<size_t>(iv) * match.stride[view] + iu];
+        const float p00 = static_cast<float>(texel & 255), p01 = static_cast<float>(texel >> 8 & 255);
+        const float p10 = static_cast<float>(texel >> 16 & 255), p11 = static_cast<float>(texel >> 24);
+        const float top = p00 + fu * (p01 - p00), bottom = p10 + fu * (p11 - p10);
+        return top + fv * (bottom - top);
+      };
+      costs[p * num_views + k] = MatchCost(
+          match.shape, patch,
+          WarpPatch(warp, slope, static_cast<float>(col), static_cast<float>(row)), sample,
+          static_cast<int>(match.max_u[view]) + 1, static_cast<int>(match.max_v[view]) + 1);
+    }
+  }
+}
+
+std::string LowerCase(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+}  // namespace
+
+std::vector<CpuTarget> CpuTargets() {
+  std::vector<CpuTarget> targets;
+  for (const int64_t target : hwy::SupportedAndGeneratedTargets()) {
+    hwy::ChosenTarget chosen;  // our own, not Highway's process-wide one
+    chosen.Update(target);
+    const size_t index = std::size(HWY_DISPATCH_TABLE(MatchCosts)) > 1 ? chosen.GetIndex() : 0;
+    targets.push_back(
+        {LowerCase(hwy::TargetName(target)), HWY_DISPATCH_TABLE(MatchCosts)[index]});
+  }
+  targets.push_back({"scalar", &ScalarMatchCosts});
+  return targets;
+}
+
+CpuTarget FindCpuTarget(const std::string& name) {
+  const std::vector<CpuTarget> targets = CpuTargets();
+  if (name == "auto") return targets.front();
+  std::string names = "auto";
+  for (const CpuTarget& target : targets) {
+    if (target.name == name) return target;
+    names += ", " + target.name;
+  }
+  throw Error(ErrorCode::kUsage,
+              "--Hpm.cpu_target " + name + ": not available on this machine; use one of " + names);
+}
+
+}  // namespace hpm
+#endif  // HWY_ONCE

@@ -1,0 +1,51 @@
+// The narrow waist between the schedule and whatever computes: CPU or CUDA.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "src/base/cancel.h"
+#include "src/core/consistency_filter.h"
+#include "src/engine/hypothesis_map.h"
+#include "src/engine/pass.h"
+#include "src/engine/view.h"
+
+namespace hpm {
+
+struct RunControl {
+  const CancelToken* cancel;
+  std::function<void(double)> progress;  // share of the pass that is done, 0..1
+};
+
+class Backend {
+ public:
+  virtual ~Backend() = default;
+
+  // E.g. "cpu avx3, 2 threads"; goes into the log and the run record.
+  virtual std::string Name() const = 0;
+
+  // Working memory, in bytes, for one reference of this size beside its images.
+  virtual uint64_t MemoryNeeded(int width, int height, int num_srcs, bool geometric) const = 0;
+
+  // Takes the images and cameras of a problem; replaces the problem before.
+  virtual void SetViews(const ViewSet& views, const MethodParams& params) = 0;
+
+  // Runs one pass in place. Throws Error(kInterrupted) when cancelled.
+  virtual void Run(const Pass& pass,
+                   const SamplingPattern& pattern,
+                   HypothesisMap* map,
+                   const RunControl& control) = 0;
+
+  // Bit j of the result: source view j is consistent with the pixel's plane.
+  virtual std::vector<uint32_t> ConsistentViews(const HypothesisMap& map,
+                                                const FilterParams& filter,
+                                                bool geometric,
+                                                const RunControl& control) = 0;
+
+  // Matching costs computed since the last SetViews.
+  virtual uint64_t num_cost_evaluations() const = 0;
+};
+
+}  // namespace hpm

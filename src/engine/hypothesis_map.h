@@ -1,0 +1,35 @@
+// One plane hypothesis per pixel of a reference image, with what a run knows of it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "src/core/pixel_state.h"
+
+namespace hpm {
+
+// Row-major, width * height entries each; reference camera frame, model units.
+struct HypothesisMap {
+  int width = 0;
+  int height = 0;
+  std::vector<Plane> planes;    // distance 0: no hypothesis yet
+  std::vector<float> costs;     // see PixelState
+  std::vector<uint32_t> masks;  // see PixelState
+  std::vector<Plane> priors;    // empty: no priors; distance 0: none at this pixel
+
+  HypothesisMap() = default;
+  HypothesisMap(int w, int h)
+      : width(w),
+        height(h),
+        planes(static_cast<size_t>(w) * h, Plane{{0, 0, 0}, 0}),
+        costs(static_cast<size_t>(w) * h, kMaxCost),
+        masks(static_cast<size_t>(w) * h, 0) {}
+
+  PixelState View() {
+    return {width, height, planes.data(), costs.data(), masks.data(),
+            priors.empty() ? nullptr : priors.data()};
+  }
+};
+
+}  // namespace hpm

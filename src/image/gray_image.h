@@ -1,0 +1,19 @@
+// 8-bit grey images, as the matching cost sees them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace hpm {
+
+// Row-major, values 0..255, no padding.
+struct GrayImage {
+  int width = 0;
+  int height = 0;
+  std::vector<uint8_t> data;
+
+  uint8_t at(int col, int row) const { return data[static_cast<size_t>(row) * width + col]; }
+};
+
+}  // namespace hpm
