@@ -1,0 +1,10 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds everything and runs all tests. Its last lines are
+# ctest's own summary, its exit code ctest's.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+scripts/install_dependencies.sh
+cmake --preset release
+cmake --build --preset release
+exec ctest --test-dir build/release --output-on-failure -j2

@@ -1,0 +1,87 @@
+"""Files stay below 500 lines, and the library never ends the process: only
+colmap_plugin/tool may."""
+import pathlib
+import re
+import sys
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+MAX_LINES = 500
+FOLDERS = ("src", "cuda", "colmap_plugin", "bench", "tests", "scripts", "cmake", "patches")
+SUFFIXES = {".h", ".cc", ".cu", ".cuh", ".py", ".sh", ".cmake"}
+NEVER_ENDS = ("src", "cuda", "colmap_plugin")
+MAY_END = "colmap_plugin/tool/"
+
+# Comments and literals, so that words in them do not count.
+NOT_CODE = re.compile(
+    r"//[^\n]*|/\*.*?\*/|\"(?:\\.|[^\"\\\n])*\"|'(?:\\.|[^'\\\n])+'", re.DOTALL
+)
+ENDS_PROCESS = re.compile(r"\b(_?exit|_Exit|quick_exit|abort|terminate)\s*\(")
+
+
+def sources(root, folders):
+    for folder in folders:
+        for path in sorted((root / folder).rglob("*")):
+            if path.suffix in SUFFIXES and path.is_file():
+                yield path, path.relative_to(root).as_posix()
+
+
+def long_files(root):
+    counts = {
+        name: path.read_text(encoding="utf-8").count("\n") for path, name in sources(root, FOLDERS)
+    }
+    return [f"{name}: {n} lines" for name, n in counts.items() if n > MAX_LINES]
+
+
+def process_ends(root):
+    found = []
+    for path, name in sources(root, NEVER_ENDS):
+        if name.startswith(MAY_END) or path.suffix not in {".h", ".cc", ".cu", ".cuh"}:
+            continue
+        code = NOT_CODE.sub(" ", path.read_text(encoding="utf-8"))
+        found += [f"{name}: calls {call}()" for call in ENDS_PROCESS.findall(code)]
+    return found
+
+
+class FileRules(unittest.TestCase):
+    def test_no_file_is_longer_than_500_lines(self):
+        self.assertEqual(long_files(ROOT), [])
+
+    def test_only_the_tool_ends_the_process(self):
+        self.assertEqual(process_ends(ROOT), [])
+
+
+class TheTestItself(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.root = pathlib.Path(folder.name)
+
+    def write(self, name, text):
+        (self.root / name).parent.mkdir(parents=True, exist_ok=True)
+        (self.root / name).write_text(text)
+
+    def test_finds_a_long_file(self):
+        self.write("src/engine/fits.cc", "int a;\n" * 500)
+        self.assertEqual(long_files(self.root), [])
+        self.write("src/engine/long.cc", "int a;\n" * 501)
+        self.assertEqual(long_files(self.root), ["src/engine/long.cc: 501 lines"])
+
+    def test_finds_exit_and_abort_in_the_library(self):
+        self.write("src/engine/run.cc", "if (bad) std::exit(1);\n")
+        self.write("colmap_plugin/formats/map_file.cc", "abort();\n")
+        self.write("cuda/launch.cu", "::_exit (1);\n")
+        self.assertEqual(len(process_ends(self.root)), 3)
+
+    def test_words_in_comments_and_strings_do_not_count(self):
+        self.write("src/engine/run.cc", '// exit(1)\n/* abort() */ Log("exit(1)"); loop_exit();\n')
+        self.assertEqual(process_ends(self.root), [])
+
+    def test_the_tool_may_exit(self):
+        self.write("colmap_plugin/tool/main.cc", "_exit(130);\n")
+        self.assertEqual(process_ends(self.root), [])
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv)
