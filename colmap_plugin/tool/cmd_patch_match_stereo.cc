@@ -1,0 +1,85 @@
+#include "colmap_plugin/tool/cmd_patch_match_stereo.h"
+
+#include "colmap_plugin/tool/help.h"
+#include "colmap_plugin/tool/parse_options.h"
+#include "colmap_plugin/tool/run_summary.h"
+#include "src/base/error.h"
+
+#include <exception>
+#include <new>
+#include <ostream>
+
+#include <fmt/format.h>
+
+namespace hpm {
+namespace {
+
+int ExitCode(ErrorCode code) { return static_cast<int>(code); }
+
+int RunAndReport(const ControllerOptions& options,
+                 const ToolEnvironment& tool,
+                 ProgressLine* progress) {
+  const LogSink log = [progress](LogLevel level, const std::string& message) {
+    progress->Log(level, message);
+  };
+  const RunSummary summary = tool.run_stereo(
+      options,
+      log,
+      [progress](const ProgressEvent& event) { progress->Update(event); },
+      *tool.cancel);
+  progress->Close();
+  for (const std::string& line : SummaryLines(options, summary))
+    log(LogLevel::kInfo, line);
+  // COLMAP's last line, which wrappers look for.
+  log(LogLevel::kInfo,
+      fmt::format("Elapsed time: {:.3f} [minutes]", summary.seconds / 60));
+  if (summary.failed.empty()) return 0;
+  log(LogLevel::kError,
+      fmt::format(
+          "{} of {} images failed: {}; the maps of the others are valid",
+          summary.failed.size(),
+          summary.num_problems,
+          fmt::join(summary.failed, ", ")));
+  return ExitCode(ErrorCode::kPartial);
+}
+
+}  // namespace
+
+int RunPatchMatchStereo(const std::vector<std::string>& arguments,
+                        const ToolEnvironment& tool) {
+  ProgressLine progress(
+      tool.out, tool.err, tool.terminal, tool.columns, tool.clock);
+  const auto fail = [&progress](ErrorCode code, const std::string& message) {
+    progress.Close();
+    progress.Log(LogLevel::kError, message);
+    return ExitCode(code);
+  };
+  try {
+    const ParsedOptions parsed = ParseOptions(arguments);
+    if (parsed.help) {
+      *tool.out << HelpText() << std::flush;
+      return 0;
+    }
+    for (const std::string& problem : parsed.problems)
+      progress.Log(LogLevel::kError, problem);
+    if (!parsed.problems.empty()) return ExitCode(ErrorCode::kUsage);
+    progress.Log(LogLevel::kInfo, VersionLine());
+    for (const std::string& note : parsed.notes)
+      progress.Log(LogLevel::kWarning, note);
+    return RunAndReport(parsed.options.controller, tool, &progress);
+  } catch (const Error& error) {
+    if (error.code() == ErrorCode::kInterrupted) {
+      return fail(error.code(),
+                  "interrupted; give the same command again to go on");
+    }
+    return fail(error.code(), error.what());
+  } catch (const std::bad_alloc&) {
+    return fail(ErrorCode::kOutOfResources,
+                "out of memory; lower --PatchMatchStereo.cache_size (GiB) or "
+                "--PatchMatchStereo.max_image_size (pixels)");
+  } catch (const std::exception& error) {
+    return fail(ErrorCode::kFailure, error.what());
+  }
+}
+
+}  // namespace hpm

@@ -1,0 +1,139 @@
+#include "colmap_plugin/tool/help.h"
+
+#include "colmap_plugin/tool/option_table.h"
+#include "colmap_plugin/tool/text.h"
+
+#include <fmt/format.h>
+
+namespace hpm {
+namespace {
+
+struct GroupTitle {
+  OptionGroup group;
+  const char* title;
+};
+
+constexpr GroupTitle kGroups[] = {
+    {OptionGroup::kCommon, "Common options"},
+    {OptionGroup::kColmap, "COLMAP's other options"},
+    {OptionGroup::kExpert, "Expert options"}};
+
+constexpr char kIntroduction[] = R"(
+Dense stereo for a COLMAP workspace, in place of `colmap patch_match_stereo`.
+
+Usage:
+  hpm_mvs patch_match_stereo --workspace_path DENSE [options]
+  hpm_mvs help | version
+
+Example:
+  colmap image_undistorter --image_path images --input_path sparse/0 --output_path dense
+  hpm_mvs patch_match_stereo --workspace_path dense
+  colmap stereo_fusion --workspace_path dense --output_path dense/fused.ply
+
+Options are written --name value or --name=value; a unique beginning of a name
+is enough. Booleans are 0/1, true/false, yes/no, on/off.
+)";
+
+constexpr char kExitCodes[] = R"(
+Exit codes: 0 done, 1 failure, 2 wrong option, 3 bad input file, 4 some images
+failed, 5 out of memory or disk, 6 device, 7 workspace in use, 130/143 interrupted.
+A run that was stopped goes on where it was when the same command is given again.
+)";
+
+constexpr char kMarkdownHead[] = R"(# Options of `hpm_mvs patch_match_stereo`
+
+This file is the output of `hpm_mvs help --markdown`; a test compares the two.
+
+- `--name value` and `--name=value`. A unique beginning of a name is enough.
+- Booleans need a value: `0/1`, `true/false`, `yes/no` or `on/off`, in any case.
+- An option that is unknown or given twice, or a value out of range, ends the program with exit
+  code 2; all such problems are listed at once. Words without `--` are ignored, as in COLMAP.
+- Numbers have a decimal point whatever the locale.
+- With `--project_path FILE` only the file counts, as in COLMAP. It holds `name=value` lines,
+  either `PatchMatchStereo.filter=1` or `filter=1` below a line `[PatchMatchStereo]`; `#` starts a
+  comment. Unknown names are refused.
+- Options of COLMAP that mean nothing here are accepted. One that is set to something other than
+  its default is named once in the log.
+- `PatchMatchStereo.geom_consistency_regularizer` and `.geom_consistency_max_cost` count only when
+  they are given: their defaults belong to COLMAP's cost, not to this one.
+)";
+
+constexpr char kMarkdownExitCodes[] = R"(
+## Exit codes
+
+| code | meaning |
+|---|---|
+| 0 | done |
+| 1 | unforeseen failure |
+| 2 | wrong option or project file |
+| 3 | a file of the workspace is missing, damaged or contradictory |
+| 4 | some images failed, the maps of the others are valid |
+| 5 | out of memory or disk |
+| 6 | the device cannot be used |
+| 7 | another run works on this workspace |
+| 130, 143 | interrupted by SIGINT, SIGTERM |
+)";
+
+std::string MarkdownRow(const OptionSpec& option) {
+  const std::string value = DefaultText(option);
+  std::string help = option.help + ".";
+  if (!option.no_effect.empty())
+    help += " **No effect**: " + option.no_effect + ".";
+  return fmt::format("| `{}` | {} | {} | {} | {} |\n",
+                     option.name,
+                     TypeText(option),
+                     value.empty() ? "" : "`" + value + "`",
+                     option.allowed.text,
+                     help);
+}
+
+// "--name arg (=default)" as COLMAP prints it, the meaning below.
+std::string HelpEntry(const OptionSpec& option) {
+  const std::string value = DefaultText(option);
+  std::string meaning = option.help + ".";
+  if (!option.allowed.text.empty()) {
+    meaning += " Allowed: " + option.allowed.text + ".";
+  }
+  if (!option.no_effect.empty()) {
+    meaning += " No effect: " + option.no_effect + ".";
+  }
+  return fmt::format("  --{} arg{}\n{}",
+                     option.name,
+                     value.empty() ? "" : " (=" + value + ")",
+                     Wrap(meaning, 80, 6));
+}
+
+}  // namespace
+
+std::string VersionLine() {
+  return "hpm_mvs " HPM_VERSION ", HPM-MVS dense stereo for COLMAP";
+}
+
+std::string HelpText() {
+  std::string text = VersionLine() + "\n" + kIntroduction;
+  for (const GroupTitle& group : kGroups) {
+    text += fmt::format("\n{}:\n", group.title);
+    if (group.group == OptionGroup::kCommon)
+      text += "  -h [ --help ]\n      Print this text.\n";
+    for (const OptionSpec& option : OptionTable()) {
+      if (option.group == group.group) text += HelpEntry(option);
+    }
+  }
+  return text + kExitCodes;
+}
+
+std::string OptionsMarkdown() {
+  std::string text = kMarkdownHead;
+  for (const GroupTitle& group : kGroups) {
+    text += fmt::format(
+        "\n## {}\n\n| name | type | default | allowed | meaning "
+        "|\n|---|---|---|---|---|\n",
+        group.title);
+    for (const OptionSpec& option : OptionTable()) {
+      if (option.group == group.group) text += MarkdownRow(option);
+    }
+  }
+  return text + kMarkdownExitCodes;
+}
+
+}  // namespace hpm

@@ -1,0 +1,375 @@
+#include "colmap_plugin/tool/option_table.h"
+
+#include <utility>
+
+namespace hpm {
+namespace {
+
+constexpr OptionGroup kCommon = OptionGroup::kCommon;
+constexpr OptionGroup kColmap = OptionGroup::kColmap;
+constexpr OptionGroup kExpert = OptionGroup::kExpert;
+
+// One row; `select` maps ToolOptions* to a pointer to the member.
+template <class Select>
+OptionSpec Row(OptionGroup group,
+               std::string name,
+               Select select,
+               Allowed allowed,
+               std::string help,
+               std::string no_effect = "") {
+  return {
+      group,
+      std::move(name),
+      [select](ToolOptions* options) { return OptionMember(select(options)); },
+      std::move(allowed),
+      std::move(help),
+      std::move(no_effect)};
+}
+
+// A row of each struct: the name on the command line is prefix + name.
+template <class T, class... Rest>
+OptionSpec Stereo(OptionGroup group,
+                  const std::string& name,
+                  T PatchMatchStereoOptions::*member,
+                  Rest... rest) {
+  return Row(
+      group,
+      "PatchMatchStereo." + name,
+      [member](ToolOptions* options) {
+        return &(options->controller.patch_match.*member);
+      },
+      std::move(rest)...);
+}
+
+template <class T, class... Rest>
+OptionSpec Hpm(OptionGroup group,
+               const std::string& name,
+               T HpmOptions::*member,
+               Rest... rest) {
+  return Row(
+      group,
+      "Hpm." + name,
+      [member](ToolOptions* options) {
+        return &(options->controller.hpm.*member);
+      },
+      std::move(rest)...);
+}
+
+template <class T, class... Rest>
+OptionSpec Workspace(OptionGroup group,
+                     const std::string& name,
+                     T WorkspaceOptions::*member,
+                     Rest... rest) {
+  return Row(
+      group,
+      name,
+      [member](ToolOptions* options) {
+        return &(options->controller.workspace.*member);
+      },
+      std::move(rest)...);
+}
+
+template <class T>
+OptionSpec Log(const std::string& name,
+               T LogOptions::*member,
+               std::string help) {
+  return Row(
+      kExpert,
+      name,
+      [member](ToolOptions* options) { return &(options->log.*member); },
+      Anything(),
+      std::move(help),
+      "messages go to standard output, warnings and errors to standard error");
+}
+
+int* Seed(ToolOptions* options) { return &options->controller.random_seed; }
+
+std::vector<OptionSpec> MakeTable() {
+  using P = PatchMatchStereoOptions;
+  using H = HpmOptions;
+  using W = WorkspaceOptions;
+  const char* const kDepthRule =
+      "both depth_min and depth_max -1, or 0 <= depth_min <= depth_max";
+  return {
+      // clang-format off: a table reads better packed
+      // What most runs set.
+      Workspace(kCommon,
+                "workspace_path",
+                &W::path,
+                Anything(),
+                "Folder with images/, sparse/ and stereo/, as "
+                "image_undistorter leaves it"),
+      Stereo(kCommon,
+             "max_image_size",
+             &P::max_image_size,
+             Anything(),
+             "Longest image side in pixels; larger images are shrunk; <= 0: no "
+             "limit"),
+      Stereo(kCommon,
+             "geom_consistency",
+             &P::geom_consistency,
+             Anything(),
+             "Add the geometric passes and write *.geometric.bin; 0: only "
+             "*.photometric.bin"),
+      Hpm(kCommon, "method", &H::method, Anything(), "Which passes are run"),
+      Hpm(kCommon,
+          "overwrite",
+          &H::overwrite,
+          Anything(),
+          "Compute maps again that are complete and made with the same "
+          "options"),
+      Hpm(kCommon,
+          "previews",
+          &H::previews,
+          Anything(),
+          "Write colour pictures of the maps to stereo/previews"),
+      Stereo(kCommon,
+             "num_threads",
+             &P::num_threads,
+             AtLeast(-1),
+             "Threads to use; -1 or 0: all cores"),
+      Stereo(kCommon,
+             "cache_size",
+             &P::cache_size,
+             Above(0),
+             "Memory for images and maps in GiB"),
+      Row(
+          kCommon,
+          "project_path",
+          [](ToolOptions* o) { return &o->project_path; },
+          Anything(),
+          "Read all options from this ini file; the rest of the command line "
+          "is then ignored"),
+
+      // COLMAP's other options, in COLMAP's order.
+      Workspace(kColmap,
+                "workspace_format",
+                &W::format,
+                OneOfAnyCase({"COLMAP", "PMVS"}),
+                "Layout of the workspace"),
+      Workspace(kColmap,
+                "pmvs_option_name",
+                &W::pmvs_option_name,
+                Anything(),
+                "Option file of a PMVS workspace"),
+      Row(
+          kColmap,
+          "config_path",
+          [](ToolOptions* o) { return &o->controller.config_path; },
+          Anything(),
+          "Read this file in place of the workspace's patch-match.cfg"),
+      Row(kColmap,
+          "random_seed",
+          Seed,
+          Anything(),
+          "Same seed, options and CPU target: same bytes (COLMAP up to 3.12)"),
+      Row(kColmap,
+          "default_random_seed",
+          Seed,
+          Anything(),
+          "The same as random_seed (COLMAP 3.13 and later)"),
+      Stereo(kColmap,
+             "depth_min",
+             &P::depth_min,
+             CheckedTogether(kDepthRule),
+             "Near end of the depth range in model units; -1: from the sparse "
+             "points"),
+      Stereo(kColmap,
+             "depth_max",
+             &P::depth_max,
+             CheckedTogether(kDepthRule),
+             "Far end of the depth range"),
+      Stereo(kColmap,
+             "window_radius",
+             &P::window_radius,
+             Between(1, 32),
+             "Half side of the matching window in pixels"),
+      Stereo(kColmap,
+             "sigma_spatial",
+             &P::sigma_spatial,
+             Anything(),
+             "Spatial spread of the window weights in pixels; <= 0: "
+             "window_radius"),
+      Stereo(kColmap,
+             "num_samples",
+             &P::num_samples,
+             Above(0),
+             "Monte-Carlo draws when source views are chosen for a pixel"),
+      Stereo(kColmap,
+             "min_triangulation_angle",
+             &P::min_triangulation_angle,
+             BetweenBelow(0, 180),
+             "Smallest angle in degrees between a reference and an automatic "
+             "source image"),
+      Stereo(kColmap,
+             "geom_consistency_regularizer",
+             &P::geom_consistency_regularizer,
+             AtLeast(0),
+             "When given, sets Hpm.geom_weight unless that is given too"),
+      Stereo(kColmap,
+             "geom_consistency_max_cost",
+             &P::geom_consistency_max_cost,
+             AtLeast(0),
+             "When given, sets Hpm.geom_max_error unless that is given too"),
+      Stereo(kColmap,
+             "filter",
+             &P::filter,
+             Anything(),
+             "Remove pixels that too few source images confirm"),
+      Stereo(kColmap,
+             "filter_min_ncc",
+             &P::filter_min_ncc,
+             Between(-1, 1),
+             "Smallest correlation at which a source image confirms a pixel"),
+      Stereo(
+          kColmap,
+          "filter_min_triangulation_angle",
+          &P::filter_min_triangulation_angle,
+          Between(0, 180),
+          "Smallest angle in degrees at which a source image confirms a pixel"),
+      Stereo(kColmap,
+             "filter_min_num_consistent",
+             &P::filter_min_num_consistent,
+             AtLeast(0),
+             "Source images that must confirm a pixel"),
+      Stereo(kColmap,
+             "filter_geom_consistency_max_cost",
+             &P::filter_geom_consistency_max_cost,
+             AtLeast(0),
+             "Largest forward-backward reprojection error in pixels of a "
+             "confirmation"),
+      Stereo(kColmap,
+             "allow_missing_files",
+             &P::allow_missing_files,
+             Anything(),
+             "Leave out source images whose files are missing"),
+      Stereo(kColmap,
+             "write_consistency_graph",
+             &P::write_consistency_graph,
+             Anything(),
+             "Also write stereo/consistency_graphs"),
+
+      // Fine tuning, and what has no meaning in this method.
+      Hpm(kExpert,
+          "cpu_target",
+          &H::cpu_target,
+          Anything(),
+          "SIMD instructions to use: auto, scalar, or a target of this "
+          "machine"),
+      Hpm(kExpert,
+          "num_iterations",
+          &H::num_iterations,
+          AtLeast(1),
+          "Red/black iterations of a photometric or prior pass"),
+      Hpm(kExpert,
+          "num_geom_iterations",
+          &H::num_geom_iterations,
+          AtLeast(1),
+          "Red/black iterations of a geometric pass"),
+      Hpm(kExpert,
+          "num_geom_passes",
+          &H::num_geom_passes,
+          AtLeast(1),
+          "Geometric passes"),
+      Hpm(kExpert,
+          "geom_weight",
+          &H::geom_weight,
+          AtLeast(0),
+          "Weight of the geometric term per pixel of reprojection error"),
+      Hpm(kExpert,
+          "geom_max_error",
+          &H::geom_max_error,
+          AtLeast(0),
+          "Cap of the reprojection error in the geometric term, in pixels"),
+      Hpm(kExpert,
+          "num_levels",
+          &H::num_levels,
+          AtLeast(-1),
+          "Levels of the prior hierarchy; -1: by image size"),
+      Stereo(kExpert,
+             "gpu_index",
+             &P::gpu_index,
+             IndexList(),
+             "GPUs to use",
+             "this build computes on the CPU"),
+      Stereo(kExpert,
+             "window_step",
+             &P::window_step,
+             Between(1, 2),
+             "Pixel stride in the window",
+             "the stride of the window is part of the method"),
+      Stereo(kExpert,
+             "sigma_color",
+             &P::sigma_color,
+             Above(0),
+             "Colour spread of COLMAP's window weights",
+             "the colour spread is part of the method"),
+      Stereo(kExpert,
+             "ncc_sigma",
+             &P::ncc_sigma,
+             Above(0),
+             "Spread of COLMAP's NCC likelihood",
+             "source views are weighted in another way"),
+      Stereo(kExpert,
+             "incident_angle_sigma",
+             &P::incident_angle_sigma,
+             Above(0),
+             "Spread of COLMAP's incident angle prior",
+             "source views are weighted in another way"),
+      Stereo(kExpert,
+             "num_iterations",
+             &P::num_iterations,
+             Above(0),
+             "Iterations of COLMAP's sweeps",
+             "COLMAP counts sweeps of another scheme; use Hpm.num_iterations"),
+      Log("log_to_stderr",
+          &LogOptions::log_to_stderr,
+          "Log switch of COLMAP up to 3.13"),
+      Log("log_target",
+          &LogOptions::log_target,
+          "Log target of COLMAP 4.0 and later"),
+      Log("log_path",
+          &LogOptions::log_path,
+          "Log file of COLMAP 4.0 and later"),
+      Log("log_level", &LogOptions::log_level, "Log level of COLMAP"),
+      Log("log_severity",
+          &LogOptions::log_severity,
+          "Log severity of COLMAP 4.0 and later"),
+      Log("log_color",
+          &LogOptions::log_color,
+          "Log colours of COLMAP 4.0 and later"),
+      // clang-format on
+  };
+}
+
+}  // namespace
+
+const std::vector<OptionSpec>& OptionTable() {
+  static const std::vector<OptionSpec> table = MakeTable();
+  return table;
+}
+
+const OptionSpec* FindOption(std::string_view name) {
+  for (const OptionSpec& option : OptionTable()) {
+    if (option.name == name) return &option;
+  }
+  return nullptr;
+}
+
+std::string DefaultText(const OptionSpec& option) {
+  ToolOptions defaults;
+  return FormatValue(option.member(&defaults));
+}
+
+std::string TypeText(const OptionSpec& option) {
+  ToolOptions defaults;
+  return TypeName(option.member(&defaults));
+}
+
+std::string AllowedText(const OptionSpec& option) {
+  const std::string type = TypeText(option);
+  if (type == "bool") return "0/1, true/false, yes/no or on/off";
+  return option.allowed.text.empty() ? type : type + ", " + option.allowed.text;
+}
+
+}  // namespace hpm

@@ -1,0 +1,24 @@
+// Small pieces of text for people.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace hpm {
+
+// Control characters, which file names and foreign messages may hold, become
+// blanks.
+std::string OneLine(std::string_view text);
+
+// "45 s", "3 min 20 s", "1 h 02 min".
+std::string FormatDuration(double seconds);
+
+// `text` as one word of a POSIX shell, quoted only if it must be.
+std::string ShellWord(const std::string& text);
+
+// `text` in lines of at most `columns` bytes where it has blanks, each begun
+// with `indent` blanks and ended with a newline.
+std::string Wrap(std::string_view text, size_t columns, size_t indent);
+
+}  // namespace hpm

@@ -1,0 +1,165 @@
+#include "colmap_plugin/tool/dispatch.h"
+#include "colmap_plugin/tool/help.h"
+#include "src/base/error.h"
+
+#include <new>
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace hpm {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::StartsWith;
+
+class CommandTest : public testing::Test {
+ protected:
+  int Run(const std::vector<std::string>& arguments) {
+    return RunTool(arguments,
+                   {&out_,
+                    &err_,
+                    /*terminal=*/false,
+                    80,
+                    [] { return 0.0; },
+                    &cancel_,
+                    [this](const ControllerOptions& options,
+                           const LogSink& log,
+                           const ProgressSink&,
+                           const CancelToken&) {
+                      ++num_runs_;
+                      options_ = options;
+                      log(LogLevel::kInfo, "Reading workspace...");
+                      if (action_) action_();
+                      return summary_;
+                    }});
+  }
+
+  int RunThrowing(std::function<void()> action) {
+    action_ = std::move(action);
+    return Run({"patch_match_stereo", "--workspace_path", "w"});
+  }
+
+  CancelToken cancel_;
+  std::function<void()> action_;
+  RunSummary summary_;
+  ControllerOptions options_;
+  int num_runs_ = 0;
+  std::ostringstream out_;
+  std::ostringstream err_;
+};
+
+TEST_F(CommandTest, GoodRunReturnsZeroAndSaysElapsedTimeLikeColmap) {
+  summary_.seconds = 90;
+  EXPECT_EQ(
+      Run({"patch_match_stereo", "--workspace_path", "w", "--random_seed=4"}),
+      0);
+  EXPECT_EQ(options_.workspace.path, "w");
+  EXPECT_EQ(options_.random_seed, 4);
+  EXPECT_THAT(out_.str(),
+              AllOf(HasSubstr("\nReading workspace...\n"),
+                    HasSubstr("\nElapsed time: 1.500 [minutes]\n")));
+  EXPECT_THAT(err_.str(), IsEmpty());
+}
+
+TEST_F(CommandTest, CommandWordMayBeLeftOut) {
+  EXPECT_EQ(Run({"--workspace_path", "w"}), 0);
+  EXPECT_EQ(num_runs_, 1);
+}
+
+TEST_F(CommandTest, WrongOptionsReturnTwoAndRunNothing) {
+  EXPECT_EQ(
+      Run({"--PatchMatchStereo.window_radius", "0", "--workspace_path", "w"}),
+      2);
+  EXPECT_EQ(num_runs_, 0);
+  EXPECT_EQ(err_.str(),
+            "ERROR: --PatchMatchStereo.window_radius '0' is not allowed; "
+            "allowed: int, 1 to 32\n");
+}
+
+TEST_F(CommandTest, UnknownCommandReturnsTwoWithTheList) {
+  EXPECT_EQ(Run({"stereo_fusion", "--workspace_path", "w"}), 2);
+  EXPECT_EQ(num_runs_, 0);
+  EXPECT_EQ(err_.str(),
+            "ERROR: unknown command 'stereo_fusion'; commands: "
+            "patch_match_stereo, help, version\n");
+}
+
+TEST_F(CommandTest, HelpAndVersionGoToStandardOutput) {
+  for (const std::vector<std::string>& arguments :
+       std::vector<std::vector<std::string>>{
+           {},
+           {"help"},
+           {"--help"},
+           {"-h"},
+           {"patch_match_stereo", "--workspace_path", "w", "-h"}}) {
+    out_.str("");
+    EXPECT_EQ(Run(arguments), 0);
+    EXPECT_EQ(out_.str(), HelpText());
+  }
+  for (const char* word : {"version", "--version"}) {
+    out_.str("");
+    EXPECT_EQ(Run({word}), 0);
+    EXPECT_EQ(out_.str(), VersionLine() + "\n");
+  }
+  out_.str("");
+  EXPECT_EQ(Run({"help", "--markdown"}), 0);
+  EXPECT_EQ(out_.str(), OptionsMarkdown());
+  EXPECT_THAT(err_.str(), IsEmpty());
+  EXPECT_EQ(num_runs_, 0);
+}
+
+TEST_F(CommandTest, FailedImagesReturnFourAndAreNamed) {
+  summary_.num_problems = 3;
+  summary_.failed = {"a.jpg", "b.jpg"};
+  EXPECT_EQ(Run({"--workspace_path", "w"}), 4);
+  EXPECT_THAT(err_.str(),
+              StartsWith("ERROR: 2 of 3 images failed: a.jpg, b.jpg"));
+}
+
+TEST_F(CommandTest, EachErrorCodeIsTheExitCodeWithOneErrorLine) {
+  for (const int code : {1, 2, 3, 5, 6, 7}) {
+    err_.str("");
+    EXPECT_EQ(RunThrowing([code] {
+                throw Error(static_cast<ErrorCode>(code), "x.bin: bad\nfile");
+              }),
+              code);
+    EXPECT_EQ(err_.str(), "ERROR: x.bin: bad file\n");
+  }
+}
+
+TEST_F(CommandTest, InterruptedRunReturns130AndSaysHowToGoOn) {
+  EXPECT_EQ(RunThrowing([this] {
+              cancel_.Cancel();
+              cancel_.ThrowIfCancelled();
+            }),
+            130);
+  EXPECT_THAT(err_.str(), HasSubstr("same command again"));
+}
+
+TEST_F(CommandTest, LackOfMemoryReturnsFiveWithAdvice) {
+  EXPECT_EQ(RunThrowing([] { throw std::bad_alloc(); }), 5);
+  EXPECT_THAT(err_.str(),
+              AllOf(HasSubstr("cache_size"), HasSubstr("max_image_size")));
+}
+
+TEST_F(CommandTest, ForeignExceptionReturnsOne) {
+  EXPECT_EQ(RunThrowing([] { throw std::runtime_error("odd"); }), 1);
+  EXPECT_EQ(err_.str(), "ERROR: odd\n");
+}
+
+TEST_F(CommandTest, OptionWithoutEffectIsNotedOnce) {
+  EXPECT_EQ(
+      Run({"--workspace_path", "w", "--PatchMatchStereo.ncc_sigma", "0.5"}), 0);
+  const std::string note = "--PatchMatchStereo.ncc_sigma has no effect here";
+  const std::string log = out_.str() + err_.str();
+  const size_t first = log.find(note);
+  ASSERT_NE(first, std::string::npos);
+  EXPECT_EQ(log.find(note, first + 1), std::string::npos);
+}
+
+}  // namespace
+}  // namespace hpm
