@@ -1,13 +1,18 @@
 // A file appears complete or not at all: temporary file in the same folder,
 // every write checked, fsync, rename, fsync of the folder.
+// Errors: kOutOfResources for a full disk, a quota or a file size limit;
+// kBadInput for a folder that cannot be written; kFailure for the rest. The
+// program must ignore SIGXFSZ, otherwise a file size limit kills it.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <string_view>
 
 namespace hpm {
 
+// One writer per path at a time within a process.
 class AtomicFile {
  public:
   // Creates missing parent folders. The temporary is "<path>.tmp.<host>.<pid>",
@@ -21,18 +26,25 @@ class AtomicFile {
   void Write(std::string_view text) { Write(text.data(), text.size()); }
 
   // Publishes the file. Throws Error(kOutOfResources) on a full disk or quota,
-  // naming the file; nothing is left under the final name then.
+  // naming the file; nothing is left under the final name then (an older file
+  // stays).
   void Commit();
 
  private:
+  [[noreturn]] void Throw(const char* action, int error) const;
+
   std::filesystem::path path_;
-  std::filesystem::path temporary_;
+  std::filesystem::path temporary_;  // empty once it was renamed
   int fd_ = -1;
+  uint64_t num_written_ = 0;
 };
 
-void WriteFileAtomically(const std::filesystem::path& path, std::string_view contents);
+void WriteFileAtomically(const std::filesystem::path& path,
+                         std::string_view contents);
 
-// Removes temporaries below `folder` whose process is gone (same host) .
+// Removes temporaries below `folder` whose process is gone (same host only: the
+// processes of another host cannot be seen). Never throws for files it cannot
+// remove.
 void RemoveStaleTemporaries(const std::filesystem::path& folder);
 
 }  // namespace hpm

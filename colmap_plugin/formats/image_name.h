@@ -2,11 +2,16 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 namespace hpm {
 
-// Throws Error(kBadInput) for empty, absolute or '..' names and for control
-// characters. Nested folders are legal.
+// Throws Error(kBadInput) for empty, absolute or '..' names, for names of a
+// folder
+// ("a/", "a/.") and for control characters. Nested folders are legal.
 void CheckImageName(const std::string& name);
+
+// For messages: quoted, control characters as \xNN, cut at 100 bytes.
+std::string QuotedName(std::string_view name);
 
 }  // namespace hpm

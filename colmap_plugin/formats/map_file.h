@@ -27,11 +27,13 @@ struct MapHeader {
 // header + 4*W*H*C bytes. Throws Error(kBadInput).
 MapHeader ReadMapHeader(const std::filesystem::path& path);
 
-// As ReadMapHeader, then the values; allocates only after the length is checked.
+// As ReadMapHeader, then the values; allocates only after the length is
+// checked.
 Map ReadMap(const std::filesystem::path& path);
 
-// Atomic: writes a temporary file beside `path`, then renames (see atomic_file.h).
-// Throws Error(kFailure) on non-finite values, Error(kOutOfResources) on a full disk.
+// Atomic: writes a temporary file beside `path`, then renames (see
+// atomic_file.h). Throws Error(kFailure) on non-finite values,
+// Error(kOutOfResources) on a full disk.
 void WriteMap(const std::filesystem::path& path, const Map& map);
 
 }  // namespace hpm

@@ -1,6 +1,8 @@
 // COLMAP's sparse model (cameras, images, points3D; binary or text, with or
 // without rigs and frames), read strictly: counts are checked against the bytes
-// that are left before anything is allocated, and every error names file and offset.
+// that are left before anything is allocated, and every error names file and
+// offset (binary) or line (text).
+// Not checked here: image names (image_name.h), repeated names, focal lengths.
 #pragma once
 
 #include <cstdint>
@@ -14,36 +16,45 @@
 
 namespace hpm {
 
-// Intrinsics as in the model: the centre of pixel (col, row) is (col + 0.5, row + 0.5).
+// Intrinsics as in the model: the centre of pixel (col, row) is (col + 0.5, row
+// + 0.5).
 struct SparseCamera {
-  std::string model;  // e.g. "PINHOLE"
-  uint64_t width = 0;
-  uint64_t height = 0;
-  std::vector<double> params;
+  std::string model;           // COLMAP's name, e.g. "PINHOLE"
+  uint64_t width = 0;          // 1 ... 2^31 - 1
+  uint64_t height = 0;         // 1 ... 2^31 - 1
+  std::vector<double> params;  // as many as the model has; may be non-finite
 };
 
 struct SparseImage {
   uint32_t id = 0;
   std::string name;  // relative path below images/, with '/' and extension
   uint32_t camera_id = 0;
-  Eigen::Quaterniond cam_from_world_rotation;  // normalised
-  Eigen::Vector3d cam_from_world_translation;
+  // Normalised; all NaN if the file's quaternion is zero or not finite.
+  Eigen::Quaterniond cam_from_world_rotation;
+  Eigen::Vector3d
+      cam_from_world_translation;  // as in the file, may be non-finite
 };
 
 struct SparsePoint {
-  Eigen::Vector3d xyz;
-  std::vector<int> track;  // image index (see SparseModel::images) per track element, repeats kept
+  Eigen::Vector3d xyz;     // finite
+  std::vector<int> track;  // image index (see SparseModel::images) per track
+                           // element, repeats kept
 };
 
 struct SparseModel {
-  std::map<uint32_t, SparseCamera> cameras;
+  std::map<uint32_t, SparseCamera>
+      cameras;  // every image's camera is among them
   // The position in this vector is COLMAP's image index (log lines, consistency
   // graphs, fused.ply.vis): file order, or frame order where frames exist.
   std::vector<SparseImage> images;
-  std::vector<SparsePoint> points;
+  std::vector<SparsePoint>
+      points;  // those with non-finite coordinates are left out
 };
 
-// Reads the binary files if all three exist, else the text files.
+// Reads the binary files if all three exist, else the text files. Poses come
+// from images.*; rigs.* and frames.* only fix the order of the images. Text
+// names may hold blanks: the whole rest of the line is the name (COLMAP cuts it
+// at the first blank). A last image without its line of points is kept, too.
 // Throws Error(kBadInput) naming the file at fault.
 SparseModel ReadSparseModel(const std::filesystem::path& folder);
 

@@ -1,0 +1,192 @@
+#include "colmap_plugin/formats/atomic_file.h"
+
+#include "src/base/error.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <csignal>
+#include <cstdio>
+#include <string>
+#include <system_error>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/statvfs.h>
+#include <unistd.h>
+
+namespace hpm {
+namespace fs = std::filesystem;
+namespace {
+
+// ".tmp.<host>." : what a temporary of this host has before the process id.
+std::string TemporaryInfix() {
+  char host[256] = {};
+  if (gethostname(host, sizeof(host) - 1) != 0 || host[0] == '\0')
+    return ".tmp.localhost.";
+  std::string infix = fmt::format(".tmp.{}.", host);
+  std::replace(infix.begin(), infix.end(), '/', '_');
+  return infix;
+}
+
+std::string FreeSpace(const fs::path& folder) {
+  struct statvfs status = {};
+  if (statvfs(folder.c_str(), &status) != 0) return "unknown free space";
+  return fmt::format("{} bytes free",
+                     static_cast<uint64_t>(status.f_bavail) *
+                         static_cast<uint64_t>(status.f_frsize));
+}
+
+fs::path ParentFolder(const fs::path& path) {
+  return path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
+
+int OpenTemporary(const fs::path& path) {
+  return open(
+      path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+}
+
+// The process id at the end of the name of a temporary of this host, else 0.
+pid_t OwnerOfTemporary(const std::string& name, const std::string& infix) {
+  const size_t digits = name.rfind('.') + 1;
+  if (digits == 0 || digits < infix.size()) return 0;
+  if (name.compare(digits - infix.size(), infix.size(), infix) != 0) return 0;
+  pid_t pid = 0;
+  const char* end = name.data() + name.size();
+  const auto [parsed, error] = std::from_chars(name.data() + digits, end, pid);
+  return error == std::errc() && parsed == end && pid > 0 ? pid : 0;
+}
+
+}  // namespace
+
+AtomicFile::AtomicFile(const fs::path& path) : path_(path) {
+  std::error_code error;
+  fs::create_directories(ParentFolder(path), error);
+  if (error) Throw("create the folder of", error.value());
+  const fs::path temporary =
+      path.string() + TemporaryInfix() + std::to_string(getpid());
+  fd_ = OpenTemporary(temporary);
+  if (fd_ < 0 && errno == EEXIST) {
+    // Left by a dead process that had the same id (usual in containers), or a
+    // planted link.
+    unlink(temporary.c_str());
+    fd_ = OpenTemporary(temporary);
+  }
+  if (fd_ < 0) Throw("create a temporary file beside", errno);
+  temporary_ = temporary;
+}
+
+AtomicFile::~AtomicFile() {
+  if (fd_ >= 0) close(fd_);
+  if (!temporary_.empty()) unlink(temporary_.c_str());
+}
+
+void AtomicFile::Write(const void* data, size_t num_bytes) {
+  const char* bytes = static_cast<const char*>(data);
+  while (num_bytes > 0) {
+    const ssize_t n = write(fd_, bytes, num_bytes);
+    if (n < 0) {
+      if (errno == EINTR) continue;
+      Throw("write", errno);
+    }
+    bytes += n;
+    num_bytes -= static_cast<size_t>(n);
+    num_written_ += static_cast<uint64_t>(n);
+  }
+}
+
+void AtomicFile::Commit() {
+  int result;
+  do {
+    result = fsync(fd_);
+  } while (result != 0 && errno == EINTR);
+  if (result != 0) Throw("write", errno);
+  // Linux closes the descriptor even if close() fails. EINTR is harmless after
+  // fsync.
+  const int fd = fd_;
+  fd_ = -1;
+  if (close(fd) != 0 && errno != EINTR) Throw("write", errno);
+  if (std::rename(temporary_.c_str(), path_.c_str()) != 0)
+    Throw("put in place", errno);
+  temporary_.clear();
+
+  const int folder =
+      open(ParentFolder(path_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (folder < 0) return;  // a folder that may be written but not listed
+  const int error = fsync(folder) == 0 ? 0 : errno;
+  close(folder);
+  // Some network file systems cannot sync a folder: then rename is all there
+  // is.
+  if (error != 0 && error != EINVAL && error != ENOTSUP && error != EINTR) {
+    Throw("sync the folder of", error);
+  }
+}
+
+void AtomicFile::Throw(const char* action, int error) const {
+  ErrorCode code = ErrorCode::kFailure;
+  std::string remedy = "check the disk and run again";
+  switch (error) {
+    case ENOSPC:
+    case EDQUOT:
+    case EFBIG:
+      code = ErrorCode::kOutOfResources;
+      remedy = fmt::format(
+          "{} bytes were written, {}; make room (disk, quota or file size "
+          "limit) and run again",
+          num_written_,
+          FreeSpace(ParentFolder(path_)));
+      break;
+    case EMFILE:
+    case ENFILE:
+    case ENOMEM:
+      code = ErrorCode::kOutOfResources;
+      remedy = "raise the limit (ulimit) and run again";
+      break;
+    case EACCES:
+    case EPERM:
+    case EROFS:
+      code = ErrorCode::kBadInput;
+      remedy = "make the folder writable or work on a copy of the workspace";
+      break;
+    case ENOENT:
+    case ENOTDIR:
+    case EEXIST:
+    case EISDIR:
+    case ELOOP:
+    case ENAMETOOLONG:
+      code = ErrorCode::kBadInput;
+      remedy = "check the path and what already stands there";
+      break;
+    default:
+      break;
+  }
+  throw Error(code,
+              fmt::format("cannot {} {}: {}; {}",
+                          action,
+                          path_.string(),
+                          std::generic_category().message(error),
+                          remedy));
+}
+
+void WriteFileAtomically(const fs::path& path, std::string_view contents) {
+  AtomicFile file(path);
+  file.Write(contents);
+  file.Commit();
+}
+
+void RemoveStaleTemporaries(const fs::path& folder) {
+  const std::string infix = TemporaryInfix();
+  std::error_code error;
+  fs::recursive_directory_iterator it(
+      folder, fs::directory_options::skip_permission_denied, error);
+  for (const fs::recursive_directory_iterator end; !error && it != end;
+       it.increment(error)) {
+    std::error_code ignored;
+    if (it->symlink_status(ignored).type() != fs::file_type::regular) continue;
+    const pid_t owner = OwnerOfTemporary(it->path().filename().string(), infix);
+    if (owner > 0 && kill(owner, 0) != 0 && errno == ESRCH)
+      fs::remove(it->path(), ignored);
+  }
+}
+
+}  // namespace hpm

@@ -1,0 +1,166 @@
+#include "colmap_plugin/formats/sparse_model_builder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+namespace hpm {
+namespace {
+
+// Scaled by the largest part first: squares of finite values may overflow or
+// vanish.
+Eigen::Quaterniond Normalized(const double wxyz[4]) {
+  Eigen::Vector4d q(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
+  const double scale = q.cwiseAbs().maxCoeff();
+  if (!q.allFinite() || scale == 0) {
+    q.setConstant(std::numeric_limits<double>::quiet_NaN());
+  } else {
+    q /= scale;
+    q /= q.norm();
+  }
+  return Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
+}
+
+}  // namespace
+
+void SparseModelBuilder::AddCamera(const InputCursor& cursor,
+                                   uint32_t id,
+                                   SparseCamera camera) {
+  constexpr uint64_t kMaxSize = std::numeric_limits<int>::max();
+  for (const uint64_t size : {camera.width, camera.height}) {
+    if (size < 1 || size > kMaxSize) {
+      cursor.Fail(fmt::format(
+          "camera {} has the size {}x{}", id, camera.width, camera.height));
+    }
+  }
+  if (!model_.cameras.emplace(id, std::move(camera)).second) {
+    cursor.Fail(fmt::format("camera id {} occurs twice", id));
+  }
+}
+
+void SparseModelBuilder::AddImage(const InputCursor& cursor,
+                                  uint32_t id,
+                                  const double rotation[4],
+                                  const double translation[3],
+                                  uint32_t camera_id,
+                                  std::string name) {
+  if (model_.cameras.count(camera_id) == 0) {
+    cursor.Fail(
+        fmt::format("image {} has the unknown camera {}", id, camera_id));
+  }
+  if (!image_index_.emplace(id, static_cast<int>(model_.images.size()))
+           .second) {
+    cursor.Fail(fmt::format("image id {} occurs twice", id));
+  }
+  SparseImage image;
+  image.id = id;
+  image.name = std::move(name);
+  image.camera_id = camera_id;
+  image.cam_from_world_rotation = Normalized(rotation);
+  image.cam_from_world_translation =
+      Eigen::Vector3d(translation[0], translation[1], translation[2]);
+  model_.images.push_back(std::move(image));
+}
+
+void SparseModelBuilder::AddRig(const InputCursor& cursor,
+                                uint32_t id,
+                                std::set<SensorId> sensors) {
+  if (!rigs_.emplace(id, std::move(sensors)).second) {
+    cursor.Fail(fmt::format("rig id {} occurs twice", id));
+  }
+}
+
+void SparseModelBuilder::AddFrame(const InputCursor& cursor,
+                                  uint32_t id,
+                                  uint32_t rig_id,
+                                  const std::set<FrameData>& data) {
+  if (!frame_ids_.insert(id).second)
+    cursor.Fail(fmt::format("frame id {} occurs twice", id));
+  const auto rig = rigs_.find(rig_id);
+  if (rig == rigs_.end())
+    cursor.Fail(fmt::format("frame {} has the unknown rig {}", id, rig_id));
+  for (const FrameData& item : data) {
+    if (rig->second.count(item.sensor) == 0) {
+      cursor.Fail(
+          fmt::format("frame {} has data of sensor {}, which rig {} lacks",
+                      id,
+                      item.sensor.id,
+                      rig_id));
+    }
+    if (item.sensor.type != kCameraSensor) continue;
+    const auto image_id = static_cast<uint32_t>(item.id);
+    const auto index = image_index_.find(image_id);
+    if (image_id != item.id || index == image_index_.end()) {
+      cursor.Fail(
+          fmt::format("frame {} has the unknown image {}", id, item.id));
+    }
+    const SparseImage& image =
+        model_.images[static_cast<size_t>(index->second)];
+    if (image.camera_id != item.sensor.id) {
+      cursor.Fail(fmt::format(
+          "frame {} gives image {} the camera {}, the images file {}",
+          id,
+          image_id,
+          item.sensor.id,
+          image.camera_id));
+    }
+    if (!images_in_frames_.insert(image_id).second) {
+      cursor.Fail(fmt::format("image {} is in two frames", image_id));
+    }
+    frame_image_ids_.push_back(image_id);
+  }
+}
+
+void SparseModelBuilder::ApplyFrames(const InputCursor& cursor) {
+  if (rigs_.empty() && frame_ids_.empty()) return;
+  for (const SparseImage& image : model_.images) {
+    if (images_in_frames_.count(image.id) == 0) {
+      cursor.Fail(fmt::format("image {} is in no frame", image.id));
+    }
+  }
+  std::vector<SparseImage> ordered;
+  ordered.reserve(model_.images.size());
+  for (const uint32_t id : frame_image_ids_) {
+    int& index = image_index_.at(id);
+    ordered.push_back(std::move(model_.images[static_cast<size_t>(index)]));
+    index = static_cast<int>(ordered.size()) - 1;
+  }
+  model_.images = std::move(ordered);
+}
+
+void SparseModelBuilder::AddPoint(
+    const InputCursor& cursor,
+    uint64_t id,
+    const Eigen::Vector3d& xyz,
+    const std::vector<uint32_t>& track_image_ids) {
+  SparsePoint point;
+  point.xyz = xyz;
+  point.track.reserve(track_image_ids.size());
+  for (const uint32_t image_id : track_image_ids) {
+    const auto it = image_index_.find(image_id);
+    if (it == image_index_.end()) {
+      cursor.Fail(fmt::format(
+          "point {} is seen by the unknown image {}", id, image_id));
+    }
+    point.track.push_back(it->second);
+  }
+  point_ids_.emplace_back(id, cursor.place());
+  if (xyz.allFinite()) model_.points.push_back(std::move(point));
+}
+
+void SparseModelBuilder::CheckPointIds(const InputCursor& cursor) {
+  std::sort(point_ids_.begin(), point_ids_.end());
+  const auto repeated = std::adjacent_find(
+      point_ids_.begin(), point_ids_.end(), [](const auto& a, const auto& b) {
+        return a.first == b.first;
+      });
+  if (repeated != point_ids_.end()) {
+    cursor.FailAt((repeated + 1)->second,
+                  fmt::format("point id {} occurs twice", repeated->first));
+  }
+  point_ids_.clear();
+}
+
+}  // namespace hpm

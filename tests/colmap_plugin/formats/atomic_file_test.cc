@@ -1,0 +1,225 @@
+// System calls are replaced by ones that record their order and fail on demand:
+// a symbol of the program wins over the one of the C library.
+#include "colmap_plugin/formats/atomic_file.h"
+
+#include "tests/colmap_plugin/formats/test_files.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <optional>
+#include <vector>
+
+#include <fcntl.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace {
+
+struct Faults {
+  bool recording = false;
+  std::vector<std::string> calls;
+  int write_error = 0;
+  int fsync_error = 0;
+  int close_error = 0;
+  int rename_error = 0;
+  int num_interrupts = 0;       // writes and syncs that fail with EINTR first
+  size_t max_write = SIZE_MAX;  // short writes
+};
+Faults faults;
+
+// Returns true if the call has to fail; errno is set then.
+bool Intercept(const char* call, int error) {
+  if (!faults.recording) return false;
+  faults.calls.push_back(call);
+  errno = error;
+  return error != 0;
+}
+
+bool Interrupt() {
+  if (!faults.recording || faults.num_interrupts == 0) return false;
+  --faults.num_interrupts;
+  errno = EINTR;
+  return true;
+}
+
+}  // namespace
+
+extern "C" {
+
+ssize_t write(int fd, const void* data, size_t num_bytes) {
+  if (faults.recording && Interrupt()) return -1;
+  if (Intercept("write", faults.write_error)) return -1;
+  if (faults.recording) num_bytes = std::min(num_bytes, faults.max_write);
+  return syscall(SYS_write, fd, data, num_bytes);
+}
+
+int fsync(int fd) {
+  if (Interrupt()) return -1;
+  if (Intercept("fsync", faults.fsync_error)) return -1;
+  return static_cast<int>(syscall(SYS_fsync, fd));
+}
+
+int close(int fd) {
+  const int result = static_cast<int>(syscall(SYS_close, fd));
+  return Intercept("close", faults.close_error) ? -1 : result;
+}
+
+int rename(const char* from, const char* to) noexcept {
+  if (Intercept("rename", faults.rename_error)) return -1;
+  return static_cast<int>(
+      syscall(SYS_renameat2, AT_FDCWD, from, AT_FDCWD, to, 0));
+}
+
+}  // extern "C"
+
+namespace hpm {
+namespace {
+
+std::string ThisHost() {
+  char host[256] = {};
+  gethostname(host, sizeof(host) - 1);
+  return host;
+}
+
+// Writes path with the faults that `prepare` sets; returns the error, if any.
+template <class Prepare>
+std::optional<Error> WriteWithFaults(const std::filesystem::path& path,
+                                     Prepare prepare) {
+  faults = Faults();
+  prepare();
+  std::optional<Error> result;
+  faults.recording = true;
+  try {
+    WriteFileAtomically(path, "0123456789");
+  } catch (const Error& error) {
+    result = error;
+  }
+  faults.recording = false;
+  return result;
+}
+
+TEST(AtomicFile, SyncsTheFileBeforeRenamingAndTheFolderAfter) {
+  const ScratchFolder folder;
+  EXPECT_FALSE(WriteWithFaults(folder / "f", [] {}));
+  EXPECT_THAT(faults.calls,
+              testing::ElementsAre(
+                  "write", "fsync", "close", "rename", "fsync", "close"));
+  EXPECT_EQ(ReadBytes(folder / "f"), "0123456789");
+}
+
+TEST(AtomicFile, SurvivesInterruptsAndShortWrites) {
+  const ScratchFolder folder;
+  EXPECT_FALSE(WriteWithFaults(folder / "f", [] {
+    faults.num_interrupts = 3;
+    faults.max_write = 3;
+  }));
+  EXPECT_EQ(ReadBytes(folder / "f"), "0123456789");
+}
+
+TEST(AtomicFile, AnyFailedStepLeavesTheOldFileAndNoTemporary) {
+  const ScratchFolder folder;
+  WriteFileAtomically(folder / "f", "old");
+  for (int Faults::*step : {&Faults::write_error,
+                            &Faults::fsync_error,
+                            &Faults::close_error,
+                            &Faults::rename_error}) {
+    const auto error =
+        WriteWithFaults(folder / "f", [step] { faults.*step = ENOSPC; });
+    ASSERT_TRUE(error);
+    EXPECT_EQ(error->code(), ErrorCode::kOutOfResources);
+    EXPECT_THAT(error->what(), testing::HasSubstr((folder / "f").string()));
+    EXPECT_THAT(error->what(), testing::HasSubstr("bytes free"));
+    EXPECT_EQ(ReadBytes(folder / "f"), "old");
+    EXPECT_EQ(folder.CountFiles(), 1u);
+  }
+}
+
+TEST(AtomicFile, ErrorsAreSortedByWhoCanMendThem) {
+  const ScratchFolder folder;
+  const auto code_of = [&](int error) {
+    return WriteWithFaults(folder / "f",
+                           [error] { faults.write_error = error; })
+        ->code();
+  };
+  for (const int error : {ENOSPC, EDQUOT, EFBIG}) {
+    EXPECT_EQ(code_of(error), ErrorCode::kOutOfResources) << error;
+  }
+  for (const int error : {EACCES, EROFS, ENOENT}) {
+    EXPECT_EQ(code_of(error), ErrorCode::kBadInput) << error;
+  }
+  EXPECT_EQ(code_of(EIO), ErrorCode::kFailure);
+}
+
+TEST(AtomicFile, NothingAppearsWithoutCommit) {
+  const ScratchFolder folder;
+  {
+    AtomicFile file(folder / "f");
+    file.Write("half");
+    EXPECT_EQ(folder.CountFiles(), 1u);
+    EXPECT_FALSE(std::filesystem::exists(folder / "f"));
+  }
+  EXPECT_EQ(folder.CountFiles(), 0u);
+}
+
+TEST(AtomicFile, AFileInPlaceOfTheFolderIsBadInput) {
+  const ScratchFolder folder;
+  WriteBytes(folder / "file", "x");
+  ExpectError(ErrorCode::kBadInput, "f", [&] {
+    WriteFileAtomically(folder / "file/sub/f", "y");
+  });
+}
+
+TEST(AtomicFile, NeverFollowsALinkInPlaceOfTheTemporary) {
+  const ScratchFolder folder;
+  WriteBytes(folder / "canary", "alive");
+  const std::string temporary =
+      "f.tmp." + ThisHost() + "." + std::to_string(getpid());
+  std::filesystem::create_symlink(folder / "canary", folder / temporary);
+  WriteFileAtomically(folder / "f", "new");
+  EXPECT_EQ(ReadBytes(folder / "canary"), "alive");
+  EXPECT_EQ(ReadBytes(folder / "f"), "new");
+  EXPECT_FALSE(std::filesystem::is_symlink(folder / "f"));
+}
+
+TEST(AtomicFile, ALinkUnderTheFinalNameIsReplacedNotFollowed) {
+  const ScratchFolder folder;
+  WriteBytes(folder / "canary", "alive");
+  std::filesystem::create_symlink(folder / "canary", folder / "f");
+  WriteFileAtomically(folder / "f", "new");
+  EXPECT_EQ(ReadBytes(folder / "canary"), "alive");
+  EXPECT_EQ(ReadBytes(folder / "f"), "new");
+}
+
+TEST(RemoveStaleTemporaries, RemovesOnlyThoseOfDeadProcessesOfThisHost) {
+  const ScratchFolder folder;
+  const pid_t child = fork();
+  if (child == 0) _exit(0);
+  ASSERT_GT(child, 0);
+  ASSERT_EQ(waitpid(child, nullptr, 0), child);
+  const std::string dead = std::to_string(child);
+  const std::string host = ThisHost();
+  const std::string stale = "sub/a.bin.tmp." + host + "." + dead;
+  const std::vector<std::string> kept = {
+      "a.bin",
+      "a.bin.tmp." + host + "." + std::to_string(getpid()),
+      "a.bin.tmp.other-" + host + "." + dead,
+      "a.bin.tmp." + host + "." + dead + "x",
+      "a.bin.tmp." + host + ".",
+      "a.bin.tmp." + host + ".-" + dead,
+      "a.bin.tmp." + host + ".99999999999999999999",
+      "a.bin." + dead,
+      dead};
+  WriteBytes(folder / stale, "torn");
+  for (const std::string& name : kept) WriteBytes(folder / name, "keep");
+  std::filesystem::create_symlink(folder / "a.bin",
+                                  folder / ("l.bin.tmp." + host + "." + dead));
+
+  RemoveStaleTemporaries(folder.path());
+  EXPECT_FALSE(std::filesystem::exists(folder / stale));
+  EXPECT_EQ(folder.CountFiles(), kept.size() + 1);
+  RemoveStaleTemporaries(folder / "none");
+}
+
+}  // namespace
+}  // namespace hpm
