@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -50,7 +51,13 @@ bool Parse(std::string_view text, int* value) {
   return ParseNumber(text, value);
 }
 bool Parse(std::string_view text, double* value) {
-  return ParseNumber(text, value);
+  // The library computes in float; a value beyond it would become infinite
+  // there.
+  double number = 0;
+  if (!ParseNumber(text, &number)) return false;
+  if (std::abs(number) > std::numeric_limits<float>::max()) return false;
+  *value = number;
+  return true;
 }
 
 // Strings and paths; a NUL would cut the name short in system calls.

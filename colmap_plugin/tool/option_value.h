@@ -20,8 +20,9 @@ using OptionMember =
 std::string TypeName(const OptionMember& member);
 
 // COLMAP's spellings: booleans are 0/1, true/false, yes/no, on/off in any case;
-// int refuses "3.5"; float takes "1e-2" and refuses NaN and infinity. False if
-// `text` is not of the type, and then the member is untouched.
+// int refuses "3.5"; float takes "1e-2" and refuses NaN and what is infinite as
+// a C++ float. False if `text` is not of the type, and then the member is
+// untouched.
 bool ParseValue(std::string_view text, const OptionMember& member);
 
 // As ParseValue reads it; floats with at most 6 significant digits.

@@ -59,6 +59,7 @@ TEST(OptionValueTest, FloatsAreFinite) {
                            "-inf",
                            "infinity",
                            "1e999",
+                           "1e39",
                            "1,5",
                            "1.5 ",
                            "0x1p3"}) {

@@ -215,7 +215,7 @@ TEST(ParseOptionsTest, ProjectFileTakesSectionsFlatKeysAndComments) {
       "max_image_size=1000\n"
       "filter=no\n"
       "[Hpm]\n"
-      "num_levels=2\n");
+      "num_geom_passes=4\n");
   const auto parsed = ParseOptions({"--project_path", path});
   EXPECT_THAT(parsed.problems, IsEmpty());
   EXPECT_THAT(parsed.notes, IsEmpty());
@@ -224,7 +224,7 @@ TEST(ParseOptionsTest, ProjectFileTakesSectionsFlatKeysAndComments) {
   EXPECT_EQ(options.patch_match.cache_size, 1.5);
   EXPECT_EQ(options.patch_match.max_image_size, 1000);
   EXPECT_FALSE(options.patch_match.filter);
-  EXPECT_EQ(options.hpm.num_levels, 2);
+  EXPECT_EQ(options.hpm.num_geom_passes, 4);
 }
 
 TEST(ParseOptionsTest, OnlyTheProjectFileCountsAndThatIsSaid) {
