@@ -2,13 +2,14 @@
 // model, and the cameras at working size.
 #pragma once
 
-#include <filesystem>
-#include <string>
-#include <vector>
-
 #include "colmap_plugin/formats/sparse_model.h"
 #include "src/base/log.h"
 #include "src/core/camera.h"
+
+#include <filesystem>
+#include <string>
+#include <unordered_map>
+#include <vector>
 
 namespace hpm {
 
@@ -24,37 +25,58 @@ enum class MapKind { kDepth, kNormal, kConsistencyGraph };
 class Workspace {
  public:
   // Reads the model, checks every image name and camera. An image whose camera
-  // is unusable (distorted, not perspective, non-finite pose or focal <= 0) keeps
-  // its index but is marked not usable, with a warning in `log`.
-  // PMVS: (re)writes patch-match.cfg and fusion.cfg from the option file.
-  // Throws Error(kBadInput) naming the missing or damaged file.
+  // is unusable (distorted, not perspective, non-finite pose or focal <= 0)
+  // keeps its index but is marked not usable, with a warning in `log`. An image
+  // file of another size than its camera scales the camera, with a note; a
+  // missing image file is no error here. PMVS: (re)writes patch-match.cfg and
+  // fusion.cfg from the option file. Throws Error(kBadInput) naming the missing
+  // or damaged file, or if no image is usable; Error(kUsage) for an unknown
+  // format.
   Workspace(const WorkspaceOptions& options, const LogSink& log);
 
   int num_images() const { return static_cast<int>(model_.images.size()); }
   const SparseModel& model() const { return model_; }
-  const std::string& ImageName(int index) const { return model_.images[index].name; }
+  const std::string& ImageName(int index) const {
+    return model_.images[index].name;
+  }
   // -1 if there is no such image.
   int ImageIndex(const std::string& name) const;
   bool usable(int index) const { return usable_[index]; }
 
   // At working size (max_image_size applied as COLMAP does), with the library's
-  // pixel rule: integer (col, row) is the pixel centre (see src/core/camera.h).
+  // pixel rule: integer (col, row) is the pixel centre (see working_camera.h).
+  // All zeros if the image is not usable.
   const Camera& camera(int index) const { return cameras_[index]; }
 
   std::filesystem::path ImagePath(int index) const;
-  std::filesystem::path StereoPath() const;  // WS/stereo or WS/stereo-<option name>
-  std::filesystem::path PatchMatchCfgPath() const { return StereoPath() / "patch-match.cfg"; }
-  std::filesystem::path FusionCfgPath() const { return StereoPath() / "fusion.cfg"; }
-  // stereo/depth_maps/<name>.<stage>.bin etc.; stage is "photometric" or "geometric".
-  std::filesystem::path MapPath(int index, MapKind kind, const std::string& stage) const;
-  // Our own state (run record, lock, maps between geometric passes): stereo/hpm_mvs.
+  std::filesystem::path StereoPath()
+      const;  // WS/stereo or WS/stereo-<option name>
+  std::filesystem::path PatchMatchCfgPath() const {
+    return StereoPath() / "patch-match.cfg";
+  }
+  std::filesystem::path FusionCfgPath() const {
+    return StereoPath() / "fusion.cfg";
+  }
+  // stereo/depth_maps/<name>.<stage>.bin etc.; stage is "photometric" or
+  // "geometric".
+  std::filesystem::path MapPath(int index,
+                                MapKind kind,
+                                const std::string& stage) const;
+  // Our own state (run record, lock, maps between geometric passes):
+  // stereo/hpm_mvs.
   std::filesystem::path StatePath() const { return StereoPath() / "hpm_mvs"; }
 
  private:
+  void ReadPmvs();
+  void CheckNames();
+  void MakeCameras(const LogSink& log);
+
   WorkspaceOptions options_;
+  bool is_pmvs_ = false;
   SparseModel model_;
   std::vector<Camera> cameras_;
   std::vector<bool> usable_;
+  std::unordered_map<std::string, int> index_of_name_;
 };
 
 }  // namespace hpm

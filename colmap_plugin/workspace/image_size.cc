@@ -1,0 +1,168 @@
+#include "colmap_plugin/workspace/image_size.h"
+
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <string>
+
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+
+namespace hpm {
+namespace {
+
+// A file of untrusted bytes. Reading past the end makes it not ok() and gives
+// zeros.
+class HeaderReader {
+ public:
+  explicit HeaderReader(const std::filesystem::path& path)
+      : file_(path, std::ios::binary) {}
+
+  bool ok() const { return file_.good(); }
+  void Seek(uint64_t offset) {
+    file_.seekg(static_cast<std::streamoff>(offset));
+  }
+  void Skip(uint32_t num_bytes) { file_.seekg(num_bytes, std::ios::cur); }
+
+  uint32_t Read(int num_bytes, bool big_endian) {
+    std::array<char, 4> bytes{};
+    file_.read(bytes.data(), num_bytes);
+    if (!file_) return 0;
+    uint32_t value = 0;
+    for (int i = 0; i < num_bytes; ++i) {
+      const int shift = 8 * (big_endian ? num_bytes - 1 - i : i);
+      value |= static_cast<uint32_t>(static_cast<uint8_t>(bytes[i])) << shift;
+    }
+    return value;
+  }
+
+ private:
+  std::ifstream file_;
+};
+
+std::optional<ImageSize> MakeSize(const HeaderReader& reader,
+                                  uint64_t width,
+                                  uint64_t height) {
+  if (!reader.ok() || !IsImageSize(width, height)) return std::nullopt;
+  return ImageSize{static_cast<int>(width), static_cast<int>(height)};
+}
+
+// ITU T.81, annex B: segments until the first start of frame.
+std::optional<ImageSize> JpegSize(HeaderReader& reader) {
+  // Real files have some tens of segments (metadata); the limit ends hostile
+  // ones.
+  constexpr int kMaxSteps = 10000;
+  reader.Seek(2);
+  for (int step = 0; step < kMaxSteps && reader.ok(); ++step) {
+    if (reader.Read(1, true) != 0xff) return std::nullopt;
+    uint32_t marker = reader.Read(1, true);
+    for (; marker == 0xff && step < kMaxSteps; ++step)
+      marker = reader.Read(1, true);
+    if (marker == 0x01 || (marker >= 0xd0 && marker <= 0xd7))
+      continue;  // without length
+    if (marker == 0xd9 || marker == 0xda)
+      return std::nullopt;  // end or scan: too late
+    const uint32_t length = reader.Read(2, true);
+    if (length < 2) return std::nullopt;
+    const bool start_of_frame = marker >= 0xc0 && marker <= 0xcf &&
+                                marker != 0xc4 && marker != 0xc8 &&
+                                marker != 0xcc;
+    if (start_of_frame) {
+      reader.Skip(1);  // bits per sample
+      const uint32_t height = reader.Read(2, true);
+      const uint32_t width = reader.Read(2, true);
+      return MakeSize(reader, width, height);
+    }
+    reader.Skip(length - 2);
+  }
+  return std::nullopt;
+}
+
+std::optional<ImageSize> PngSize(HeaderReader& reader) {
+  reader.Seek(12);
+  if (reader.Read(4, true) != 0x49484452u) return std::nullopt;  // "IHDR"
+  const uint32_t width = reader.Read(4, true);
+  const uint32_t height = reader.Read(4, true);
+  return MakeSize(reader, width, height);
+}
+
+std::optional<ImageSize> BmpSize(HeaderReader& reader) {
+  reader.Seek(14);
+  const uint32_t header_size = reader.Read(4, false);
+  if (header_size == 12) {
+    const uint32_t width = reader.Read(2, false);
+    const uint32_t height = reader.Read(2, false);
+    return MakeSize(reader, width, height);
+  }
+  const uint32_t width = reader.Read(4, false);
+  const int64_t height =
+      static_cast<int32_t>(reader.Read(4, false));  // negative: top row first
+  return MakeSize(
+      reader, width, static_cast<uint64_t>(height < 0 ? -height : height));
+}
+
+// TIFF 6.0, section 2: ImageWidth and ImageLength of the first directory.
+std::optional<ImageSize> TiffSize(HeaderReader& reader, bool big_endian) {
+  constexpr uint32_t kWidthTag = 256, kHeightTag = 257, kShort = 3, kLong = 4;
+  reader.Seek(4);
+  reader.Seek(reader.Read(4, big_endian));
+  const uint32_t num_entries = reader.Read(2, big_endian);
+  uint32_t width = 0;
+  uint32_t height = 0;
+  for (uint32_t i = 0;
+       i < num_entries && reader.ok() && (width == 0 || height == 0);
+       ++i) {
+    const uint32_t tag = reader.Read(2, big_endian);
+    const uint32_t type = reader.Read(2, big_endian);
+    reader.Skip(4);  // count
+    uint32_t value = 0;
+    if (type == kShort) {
+      value = reader.Read(2, big_endian);
+      reader.Skip(2);
+    } else if (type == kLong) {
+      value = reader.Read(4, big_endian);
+    } else {
+      reader.Skip(4);
+    }
+    if (tag == kWidthTag) width = value;
+    if (tag == kHeightTag) height = value;
+  }
+  return MakeSize(reader, width, height);
+}
+
+std::optional<ImageSize> DecodedSize(const std::filesystem::path& path) {
+  try {
+    const cv::Mat image = cv::imread(
+        path.string(), cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
+    if (image.empty()) return std::nullopt;
+    return ImageSize{image.cols, image.rows};
+  } catch (const cv::Exception&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace
+
+bool IsImageSize(unsigned long long width, unsigned long long height) {
+  return width > 0 && height > 0 && width <= kMaxImageSide &&
+         height <= kMaxImageSide &&
+         width * height <= static_cast<unsigned long long>(kMaxImagePixels);
+}
+
+std::optional<ImageSize> ReadImageSize(const std::filesystem::path& path) {
+  // A pipe or device of that name would block or never end.
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return std::nullopt;
+  HeaderReader reader(path);
+  const uint32_t magic = reader.Read(4, true);
+  if (!reader.ok()) return std::nullopt;
+  if (magic >> 16 == 0xffd8) return JpegSize(reader);
+  if (magic == 0x89504e47u) return PngSize(reader);
+  if (magic >> 16 == 0x424d) return BmpSize(reader);
+  if (magic == 0x49492a00u) return TiffSize(reader, /*big_endian=*/false);
+  if (magic == 0x4d4d002au) return TiffSize(reader, /*big_endian=*/true);
+  return DecodedSize(path);
+}
+
+}  // namespace hpm

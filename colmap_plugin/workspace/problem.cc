@@ -1,0 +1,165 @@
+#include "colmap_plugin/workspace/problem.h"
+
+#include "colmap_plugin/formats/image_name.h"
+#include "colmap_plugin/formats/patch_match_cfg.h"
+#include "colmap_plugin/workspace/depth_range.h"
+#include "colmap_plugin/workspace/source_selection.h"
+#include "src/base/error.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace hpm {
+namespace {
+
+class ProblemReader {
+ public:
+  ProblemReader(const Workspace& workspace,
+                const ProblemOptions& options,
+                const LogSink& log)
+      : workspace_(workspace),
+        options_(options),
+        log_(log),
+        path_(options.config_path.empty() ? workspace.PatchMatchCfgPath()
+                                          : options.config_path),
+        selector_(workspace) {}
+
+  std::vector<StereoProblem> Read() {
+    const DepthRanges ranges(
+        workspace_, options_.depth_min, options_.depth_max);
+    std::vector<bool> seen(workspace_.num_images(), false);
+    std::vector<StereoProblem> problems;
+    for (const PatchMatchCfgEntry& entry : ReadPatchMatchCfg(path_)) {
+      const int ref = IndexOf(entry.ref_name, entry.line);
+      std::vector<int> sources =
+          Sources(entry, ref);  // also checks the names of the line
+      if (seen[ref]) {
+        Warn("Ignoring line {} of {}: {} was listed before.",
+             entry.line,
+             path_.string(),
+             entry.ref_name);
+        continue;
+      }
+      seen[ref] = true;
+      if (!workspace_.usable(ref)) {
+        Warn("Ignoring reference image {}, because its camera cannot be used.",
+             entry.ref_name);
+        continue;
+      }
+      if (sources.empty()) {
+        Warn("Ignoring reference image {}, because it has no source images.",
+             entry.ref_name);
+        continue;
+      }
+      if (sources.size() > MaxNumSources()) {
+        sources.resize(MaxNumSources());
+        ++num_cut_;
+      }
+      const DepthRange range = ranges.ForImage(ref);
+      problems.push_back({ref, std::move(sources), range.min, range.max});
+    }
+    if (num_cut_ > 0 && log_) {
+      log_(LogLevel::kInfo,
+           fmt::format("{} reference images have more than {} source images; "
+                       "the first {} are used.",
+                       num_cut_,
+                       MaxNumSources(),
+                       MaxNumSources()));
+    }
+    return problems;
+  }
+
+ private:
+  template <class... Args>
+  void Warn(fmt::format_string<Args...> format, Args&&... args) const {
+    if (log_)
+      log_(LogLevel::kWarning,
+           fmt::format(format, std::forward<Args>(args)...));
+  }
+
+  size_t MaxNumSources() const {
+    return std::max(0, options_.max_num_src_images);
+  }
+
+  int IndexOf(const std::string& name, int line) const {
+    const int index = workspace_.ImageIndex(name);
+    if (index < 0) {
+      throw Error(ErrorCode::kBadInput,
+                  fmt::format("{}, entry of line {}: image {} does not exist "
+                              "in the sparse model; "
+                              "correct the name or remove it",
+                              path_.string(),
+                              line,
+                              QuotedName(name)));
+    }
+    return index;
+  }
+
+  std::vector<int> Sources(const PatchMatchCfgEntry& entry, int ref) const {
+    switch (entry.sources) {
+      case PatchMatchCfgEntry::Sources::kAuto:
+        return selector_.Select(
+            ref, options_.min_triangulation_angle, entry.max_num_auto);
+      case PatchMatchCfgEntry::Sources::kAll:
+        return AllSources(ref);
+      case PatchMatchCfgEntry::Sources::kList:
+        break;
+    }
+    return ListedSources(entry, ref);
+  }
+
+  // Overlapping images first, so that the cut to MaxNumSources keeps the useful
+  // ones.
+  std::vector<int> AllSources(int ref) const {
+    std::vector<int> sources =
+        selector_.Select(ref, /*min_angle=*/0, /*max_num=*/-1);
+    std::vector<bool> taken(workspace_.num_images(), false);
+    taken[ref] = true;
+    for (const int source : sources) taken[source] = true;
+    for (int i = 0; i < workspace_.num_images(); ++i) {
+      if (!taken[i] && workspace_.usable(i)) sources.push_back(i);
+    }
+    return sources;
+  }
+
+  std::vector<int> ListedSources(const PatchMatchCfgEntry& entry,
+                                 int ref) const {
+    std::vector<int> sources;
+    std::vector<bool> taken(workspace_.num_images(), false);
+    taken[ref] = true;
+    for (const std::string& name : entry.src_names) {
+      const int source = IndexOf(name, entry.line);
+      if (taken[source]) continue;
+      taken[source] = true;
+      if (workspace_.usable(source)) {
+        sources.push_back(source);
+      } else {
+        Warn(
+            "Ignoring source image {} of {}, because its camera cannot be "
+            "used.",
+            name,
+            entry.ref_name);
+      }
+    }
+    return sources;
+  }
+
+  const Workspace& workspace_;
+  const ProblemOptions& options_;
+  const LogSink& log_;
+  const std::filesystem::path path_;
+  const SourceSelector selector_;
+  int num_cut_ = 0;
+};
+
+}  // namespace
+
+std::vector<StereoProblem> ReadProblems(const Workspace& workspace,
+                                        const ProblemOptions& options,
+                                        const LogSink& log) {
+  return ProblemReader(workspace, options, log).Read();
+}
+
+}  // namespace hpm

@@ -1,0 +1,61 @@
+#include "colmap_plugin/workspace/stamp.h"
+
+#include "colmap_plugin/formats/atomic_file.h"
+#include "colmap_plugin/formats/image_name.h"
+
+#include <fstream>
+
+namespace hpm {
+namespace {
+
+// Far above any stamp; a larger file is not ours.
+constexpr size_t kMaxStampBytes = 1 << 20;
+
+}  // namespace
+
+std::filesystem::path StampPath(const std::filesystem::path& state_path,
+                                const std::string& image_name,
+                                const std::string& stage) {
+  CheckImageName(image_name);
+  CheckImageName(stage);
+  return state_path / "stamps" / (image_name + "." + stage + ".json");
+}
+
+void WriteStamp(const std::filesystem::path& state_path,
+                const std::string& image_name,
+                const std::string& stage,
+                const std::string& fingerprint,
+                const nlohmann::json& statistics) {
+  nlohmann::json stamp = nlohmann::json::object();
+  if (statistics.is_object()) stamp = statistics;
+  stamp["fingerprint"] = fingerprint;
+  // No newline at the end: the closing brace is the last byte, so every proper
+  // prefix of a stamp is recognised as damaged.
+  WriteFileAtomically(
+      StampPath(state_path, image_name, stage),
+      stamp.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+}
+
+std::optional<std::string> ReadStampFingerprint(
+    const std::filesystem::path& state_path,
+    const std::string& image_name,
+    const std::string& stage) {
+  const std::filesystem::path path = StampPath(state_path, image_name, stage);
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return std::nullopt;
+  std::ifstream file(path, std::ios::binary);
+  std::string text(kMaxStampBytes, '\0');
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<size_t>(file.gcount()));
+  if (text.size() == kMaxStampBytes) return std::nullopt;
+
+  const nlohmann::json stamp =
+      nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
+  if (!stamp.is_object()) return std::nullopt;
+  const auto fingerprint = stamp.find("fingerprint");
+  if (fingerprint == stamp.end() || !fingerprint->is_string())
+    return std::nullopt;
+  return fingerprint->get<std::string>();
+}
+
+}  // namespace hpm

@@ -1,0 +1,126 @@
+#include "colmap_plugin/workspace/output_check.h"
+
+#include "colmap_plugin/formats/map_file.h"
+#include "colmap_plugin/workspace/run_record.h"
+#include "tests/colmap_plugin/workspace/test_workspace.h"
+
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace hpm {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+class OutputCheckTest : public ::testing::Test {
+ protected:
+  OutputCheckTest() {
+    files_.AddImage("a.jpg", {0, 0, 0});
+    files_.AddImage("cam1/day2/x.jpg", {1, 0, 0});
+    problems_ = {{1, {0}, 1, 2}, {0, {1}, 1, 2}};
+  }
+  TestWorkspace files_;
+  std::vector<StereoProblem> problems_;
+};
+
+TEST_F(OutputCheckTest, CreatesEveryFolderAndLeavesNoTrialFile) {
+  const Workspace workspace = files_.Open();
+  PrepareOutputs(workspace, problems_, 0);
+  for (const char* kind : {"depth_maps", "normal_maps", "consistency_graphs"}) {
+    EXPECT_TRUE(fs::is_directory(workspace.StereoPath() / kind / "cam1/day2"));
+  }
+  EXPECT_TRUE(fs::is_directory(workspace.StatePath()));
+  std::vector<std::string> left;
+  for (const auto& entry :
+       fs::recursive_directory_iterator(workspace.StereoPath())) {
+    if (!entry.is_directory()) left.push_back(entry.path().filename().string());
+  }
+  EXPECT_THAT(left, testing::ElementsAre("fusion.cfg"));
+}
+
+TEST_F(OutputCheckTest, WritesFusionCfgOnlyIfThereIsNone) {
+  const Workspace workspace = files_.Open();
+  PrepareOutputs(workspace, problems_, 0);
+  EXPECT_EQ(ReadText(workspace.FusionCfgPath()), "cam1/day2/x.jpg\na.jpg\n");
+  WriteText(workspace.FusionCfgPath(), "a.jpg\n");
+  PrepareOutputs(workspace, problems_, 0);
+  EXPECT_EQ(ReadText(workspace.FusionCfgPath()), "a.jpg\n");
+}
+
+TEST_F(OutputCheckTest, TooSmallADiskIsToldWithNeededAndFreeBytes) {
+  const Workspace workspace = files_.Open();
+  const uint64_t needed = uint64_t{1} << 62;
+  const auto error =
+      ErrorOf([&] { PrepareOutputs(workspace, problems_, needed); });
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->code(), ErrorCode::kOutOfResources);
+  EXPECT_THAT(error->what(), HasSubstr(std::to_string(needed)));
+  EXPECT_THAT(error->what(), HasSubstr("bytes are free"));
+}
+
+TEST_F(OutputCheckTest, AFileInPlaceOfAFolderIsNamed) {
+  const Workspace workspace = files_.Open();
+  WriteText(workspace.StereoPath() / "normal_maps", "a file");
+  const auto error = ErrorOf([&] { PrepareOutputs(workspace, problems_, 0); });
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->code(), ErrorCode::kBadInput);
+  EXPECT_THAT(error->what(), HasSubstr("normal_maps"));
+}
+
+// In a child, since permission bits mean nothing to root.
+TEST_F(OutputCheckTest, AFolderWithoutPermissionIsNamed) {
+  const Workspace workspace = files_.Open();
+  PrepareOutputs(workspace, problems_, 0);
+  const fs::path folder = workspace.StereoPath() / "depth_maps";
+  fs::permissions(files_.path(), fs::perms::all);
+  for (const auto& entry : fs::recursive_directory_iterator(files_.path())) {
+    fs::permissions(entry.path(), fs::perms::all);
+  }
+  ASSERT_EQ(chmod(folder.c_str(), 0555), 0);
+  const pid_t pid = fork();
+  if (pid == 0) {
+    if (geteuid() == 0 && setuid(65534) != 0) _exit(100);
+    const auto error =
+        ErrorOf([&] { PrepareOutputs(workspace, problems_, 0); });
+    if (!error) _exit(101);
+    const bool named =
+        std::string(error->what()).find("depth_maps") != std::string::npos;
+    _exit(named ? static_cast<int>(error->code()) : 102);
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(pid, &status, 0), pid);
+  chmod(folder.c_str(), 0755);
+  ASSERT_TRUE(WIFEXITED(status));
+  if (WEXITSTATUS(status) == 100)
+    GTEST_SKIP() << "cannot become an unprivileged user";
+  EXPECT_EQ(WEXITSTATUS(status), static_cast<int>(ErrorCode::kBadInput));
+}
+
+TEST_F(OutputCheckTest, MapBytesAreTheSizesOfTheFiles) {
+  const Camera camera = files_.Open().camera(0);
+  uint64_t num_bytes = 0;
+  for (const int channels : {1, 3}) {
+    const size_t num_values =
+        static_cast<size_t>(camera.width) * camera.height * channels;
+    const fs::path path = files_.path() / "map.bin";
+    WriteMap(path,
+             {camera.width,
+              camera.height,
+              channels,
+              std::vector<float>(num_values, 1)});
+    num_bytes += fs::file_size(path);
+  }
+  EXPECT_EQ(DepthAndNormalMapBytes(camera), num_bytes);
+}
+
+TEST(RunRecord, IsReadableJson) {
+  const TemporaryFolder state;
+  WriteRunRecord(state.path(), {{"images", 3}, {"name", "\xff"}});
+  EXPECT_EQ(
+      nlohmann::json::parse(ReadText(state.path() / "run.json"))["images"], 3);
+}
+
+}  // namespace
+}  // namespace hpm

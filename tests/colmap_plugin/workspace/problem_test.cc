@@ -1,0 +1,185 @@
+#include "colmap_plugin/workspace/problem.h"
+
+#include "tests/colmap_plugin/workspace/test_workspace.h"
+
+namespace hpm {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+// Five images in a row; a point seen by all of 0 ... 3, a second by 1 and 2.
+// Image 4 shares nothing.
+class ProblemTest : public ::testing::Test {
+ protected:
+  ProblemTest() {
+    for (int i = 0; i < 5; ++i)
+      files_.AddImage(fmt::format("{}.jpg", i), {1.0 * i, 0, 0});
+    files_.AddPoint({0, 0, 5}, {0, 1, 2, 3});
+    files_.AddPoint({1, 0, 5}, {1, 2});
+  }
+
+  std::vector<StereoProblem> Read(const std::string& cfg) {
+    files_.WriteCfg(cfg);
+    return ReadProblems(files_.Open(), options_, files_.Log());
+  }
+
+  std::optional<Error> ErrorOfReading(const std::string& cfg) {
+    return ErrorOf([&] { Read(cfg); });
+  }
+
+  TestWorkspace files_;
+  ProblemOptions options_;
+};
+
+TEST_F(ProblemTest, FollowTheFile) {
+  const auto problems = Read(
+      "# comment\r\n 2.jpg\r\n# between\n\n__auto__, 20\r\n"
+      "0.jpg\n3.jpg; 1.jpg,,2.jpg, \n"
+      "1.jpg\n__auto__ , 1\n"
+      "4.jpg\n");
+  ASSERT_EQ(problems.size(), 3u);
+  EXPECT_EQ(problems[0].ref_image, 2);
+  EXPECT_THAT(problems[0].src_images, ElementsAre(1, 0, 3));
+  EXPECT_FLOAT_EQ(problems[0].depth_min, 3.75f);
+  EXPECT_FLOAT_EQ(problems[0].depth_max, 6.25f);
+  EXPECT_EQ(problems[1].ref_image, 0);
+  EXPECT_THAT(problems[1].src_images, ElementsAre(3, 1, 2));
+  EXPECT_EQ(problems[2].ref_image, 1);
+  EXPECT_THAT(problems[2].src_images, ElementsAre(2));
+  EXPECT_THAT(files_.Warnings(), IsEmpty());
+}
+
+TEST_F(ProblemTest, AllTakesEveryOtherImageOverlappingOnesFirst) {
+  const auto problems = Read("2.jpg\n__all__\n");
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_THAT(problems[0].src_images, ElementsAre(1, 0, 3, 4));
+}
+
+TEST_F(ProblemTest, NegativeAutoNumberIsUnlimitedAndZeroIsNone) {
+  const auto problems = Read("2.jpg\n__auto__, -1\n1.jpg\n__auto__, 0\n");
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_THAT(problems[0].src_images, ElementsAre(1, 0, 3));
+  EXPECT_THAT(
+      files_.Warnings(),
+      ElementsAre(
+          "Ignoring reference image 1.jpg, because it has no source images."));
+}
+
+TEST_F(ProblemTest, ReferenceAndRepeatsAreNoSources) {
+  const auto problems = Read("0.jpg\n2.jpg, 0.jpg, 1.jpg, 2.jpg\n");
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_THAT(problems[0].src_images, ElementsAre(2, 1));
+}
+
+TEST_F(ProblemTest, ImagesWithoutSourcesAreSkippedWithAWarning) {
+  EXPECT_THAT(Read("4.jpg\n__auto__, 20\n0.jpg\n0.jpg\n"), IsEmpty());
+  EXPECT_THAT(
+      files_.Warnings(),
+      ElementsAre(
+          "Ignoring reference image 4.jpg, because it has no source images.",
+          "Ignoring reference image 0.jpg, because it has no source images."));
+}
+
+TEST_F(ProblemTest, OneSourceIsEnough) {
+  const auto problems = Read("0.jpg\n1.jpg\n");
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_THAT(problems[0].src_images, ElementsAre(1));
+}
+
+TEST_F(ProblemTest, ARepeatedReferenceKeepsItsFirstEntry) {
+  const auto problems = Read("0.jpg\n1.jpg\n0.jpg\n2.jpg\n");
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_THAT(problems[0].src_images, ElementsAre(1));
+  EXPECT_THAT(files_.Warnings(), ElementsAre(HasSubstr("0.jpg")));
+}
+
+TEST_F(ProblemTest, UnknownNamesAreErrorsWithFileAndLine) {
+  for (const char* cfg : {"0.jpg\n1.jpg\n\nabsent.jpg\n__auto__, 20\n",
+                          "0.jpg\n1.jpg\n\n1.jpg\n0.jpg, absent.jpg\n"}) {
+    const auto error = ErrorOfReading(cfg);
+    ASSERT_TRUE(error) << cfg;
+    EXPECT_EQ(error->code(), ErrorCode::kBadInput);
+    EXPECT_THAT(error->what(), HasSubstr("patch-match.cfg"));
+    EXPECT_THAT(error->what(), HasSubstr("line 4"));
+    EXPECT_THAT(error->what(), HasSubstr("absent.jpg"));
+  }
+}
+
+TEST_F(ProblemTest, AutoWithoutNumberIsAnError) {
+  for (const char* cfg : {"0.jpg\n__auto__\n", "0.jpg\n__auto__, x\n"}) {
+    const auto error = ErrorOfReading(cfg);
+    ASSERT_TRUE(error) << cfg;
+    EXPECT_EQ(error->code(), ErrorCode::kBadInput);
+  }
+}
+
+TEST_F(ProblemTest, ConfigPathReplacesTheWorkspacesFile) {
+  options_.config_path = files_.path() / "other.cfg";
+  WriteText(options_.config_path, "3.jpg\n1.jpg\n");
+  const auto problems = Read("0.jpg\n1.jpg\n");
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_EQ(problems[0].ref_image, 3);
+  options_.config_path = files_.path() / "absent.cfg";
+  const auto error = ErrorOfReading("0.jpg\n1.jpg\n");
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->code(), ErrorCode::kBadInput);
+  EXPECT_THAT(error->what(), HasSubstr("absent.cfg"));
+}
+
+TEST_F(ProblemTest, MinTriangulationAngleIsHonoured) {
+  // Seen from 0 and 1 under atan(1/5) = 11.3 degrees, from 0 and 3 under 31.
+  options_.min_triangulation_angle = 20;
+  const auto problems = Read("0.jpg\n__auto__, 20\n");
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_THAT(problems[0].src_images, ElementsAre(2, 3));
+}
+
+TEST_F(ProblemTest, UnknownDepthRangeNamesTheImage) {
+  const auto error = ErrorOfReading("4.jpg\n0.jpg\n");
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->code(), ErrorCode::kBadInput);
+  EXPECT_THAT(error->what(), HasSubstr("4.jpg"));
+  options_.depth_min = 1;
+  options_.depth_max = 2;
+  const auto problems = Read("4.jpg\n0.jpg\n");
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_EQ(problems[0].depth_min, 1);
+  EXPECT_EQ(problems[0].depth_max, 2);
+}
+
+TEST_F(ProblemTest, UnusableImagesAreDroppedWithAWarning) {
+  files_.AddImagePose("broken.jpg", "1 0 0 0 nan 0 0");
+  const auto problems =
+      Read("0.jpg\nbroken.jpg, 1.jpg\nbroken.jpg\n0.jpg\n3.jpg\n__all__\n");
+  ASSERT_EQ(problems.size(), 2u);
+  EXPECT_THAT(problems[0].src_images, ElementsAre(1));
+  EXPECT_THAT(problems[1].src_images, ElementsAre(0, 1, 2, 4));
+  EXPECT_THAT(files_.Warnings(),
+              ElementsAre(HasSubstr("broken.jpg is not used"),
+                          HasSubstr("source image broken.jpg of 0.jpg"),
+                          HasSubstr("reference image broken.jpg")));
+}
+
+TEST_F(ProblemTest, SourcesBeyondTheLimitAreCutWithOneNote) {
+  options_.max_num_src_images = 2;
+  const auto problems =
+      Read("0.jpg\n4.jpg, 3.jpg, 2.jpg\n2.jpg\n__all__\n1.jpg\n0.jpg, 2.jpg\n");
+  ASSERT_EQ(problems.size(), 3u);
+  EXPECT_THAT(problems[0].src_images, ElementsAre(4, 3));
+  EXPECT_THAT(problems[1].src_images, ElementsAre(1, 0));
+  EXPECT_THAT(problems[2].src_images, ElementsAre(0, 2));
+  EXPECT_THAT(files_.Notes(), ElementsAre(HasSubstr("2 reference images")));
+}
+
+TEST(Problem, AllWithOneImageIsSkipped) {
+  TestWorkspace files;
+  files.AddImage("a.jpg", {0, 0, 0});
+  files.WriteCfg("a.jpg\n__all__\n");
+  EXPECT_THAT(ReadProblems(files.Open(), {}, files.Log()), IsEmpty());
+  EXPECT_THAT(files.Warnings(), ElementsAre(HasSubstr("no source images")));
+}
+
+}  // namespace
+}  // namespace hpm

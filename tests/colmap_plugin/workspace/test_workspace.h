@@ -1,0 +1,155 @@
+// Workspaces of a few images, written as text models into a temporary folder.
+#pragma once
+
+#include "colmap_plugin/workspace/workspace.h"
+#include "src/base/error.h"
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace hpm {
+
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string name =
+        (std::filesystem::temp_directory_path() / "hpm_mvs_test.XXXXXX")
+            .string();
+    if (mkdtemp(name.data()) == nullptr)
+      throw std::runtime_error("cannot create " + name);
+    path_ = name;
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+inline void WriteText(const std::filesystem::path& path,
+                      const std::string& text) {
+  std::filesystem::create_directories(path.parent_path());
+  std::ofstream(path, std::ios::binary) << text;
+}
+
+inline std::string ReadText(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file),
+          std::istreambuf_iterator<char>()};
+}
+
+// Enough of a PNG for its size to be read.
+inline std::string PngHeader(uint32_t width, uint32_t height) {
+  const auto big_endian = [](uint32_t value) {
+    std::string bytes;
+    for (int shift = 24; shift >= 0; shift -= 8)
+      bytes += static_cast<char>(value >> shift);
+    return bytes;
+  };
+  return std::string("\x89PNG\r\n\x1a\n", 8) + big_endian(13) + "IHDR" +
+         big_endian(width) + big_endian(height);
+}
+
+// The error that `function` throws, if any.
+inline std::optional<Error> ErrorOf(const std::function<void()>& function) {
+  try {
+    function();
+  } catch (const Error& error) {
+    return error;
+  }
+  return std::nullopt;
+}
+
+class TestWorkspace {
+ public:
+  // One camera of id 1: PINHOLE 160x120, f = 100, centre of the image.
+  TestWorkspace() { AddCamera(1, "PINHOLE 160 120 100 100 80 60"); }
+
+  void AddCamera(int id, const std::string& model_size_params) {
+    cameras_ += fmt::format("{} {}\n", id, model_size_params);
+  }
+
+  // Looks along +z of the world from `center`.
+  int AddImage(const std::string& name,
+               const Eigen::Vector3d& center,
+               int camera_id = 1) {
+    return AddImagePose(
+        name,
+        fmt::format("1 0 0 0 {} {} {}", -center.x(), -center.y(), -center.z()),
+        camera_id);
+  }
+
+  int AddImagePose(const std::string& name,
+                   const std::string& pose,
+                   int camera_id = 1) {
+    images_ +=
+        fmt::format("{} {} {} {}\n\n", 10 + num_images_, pose, camera_id, name);
+    return num_images_++;
+  }
+
+  void AddPoint(const Eigen::Vector3d& xyz, const std::vector<int>& images) {
+    points_ += fmt::format(
+        "{} {} {} {} 0 0 0 0", ++num_points_, xyz.x(), xyz.y(), xyz.z());
+    for (const int image : images) points_ += fmt::format(" {} 0", 10 + image);
+    points_ += "\n";
+  }
+
+  void WriteCfg(const std::string& text) {
+    WriteText(path() / "stereo/patch-match.cfg", text);
+  }
+
+  const std::filesystem::path& path() const { return folder_.path(); }
+
+  Workspace Open(int max_image_size = -1) {
+    WriteText(path() / "sparse/cameras.txt", cameras_);
+    WriteText(path() / "sparse/images.txt", images_);
+    WriteText(path() / "sparse/points3D.txt", points_);
+    WorkspaceOptions options;
+    options.path = path();
+    options.max_image_size = max_image_size;
+    return Workspace(options, Log());
+  }
+
+  LogSink Log() {
+    return [this](LogLevel level, const std::string& line) {
+      log_.emplace_back(level, line);
+    };
+  }
+  std::vector<std::string> LinesOf(LogLevel level) const {
+    std::vector<std::string> lines;
+    for (const auto& [line_level, line] : log_) {
+      if (line_level == level) lines.push_back(line);
+    }
+    return lines;
+  }
+  std::vector<std::string> Warnings() const {
+    return LinesOf(LogLevel::kWarning);
+  }
+  std::vector<std::string> Notes() const { return LinesOf(LogLevel::kInfo); }
+
+ private:
+  TemporaryFolder folder_;
+  std::string cameras_;
+  std::string images_;
+  std::string points_;
+  int num_images_ = 0;
+  int num_points_ = 0;
+  std::vector<std::pair<LogLevel, std::string>> log_;
+};
+
+}  // namespace hpm

@@ -1,0 +1,181 @@
+#include "colmap_plugin/workspace/workspace.h"
+
+#include "colmap_plugin/formats/patch_match_cfg.h"
+#include "tests/colmap_plugin/workspace/test_workspace.h"
+
+namespace hpm {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+TEST(Workspace, KnowsWhereFilesLie) {
+  TestWorkspace files;
+  files.AddImage("a.jpg", {0, 0, 0});
+  files.AddImage("cam1/day2/x.jpg", {1, 0, 0});
+  const Workspace workspace = files.Open();
+  const auto root = files.path();
+  EXPECT_EQ(workspace.ImageIndex("cam1/day2/x.jpg"), 1);
+  EXPECT_EQ(workspace.ImageIndex("x.jpg"), -1);
+  EXPECT_EQ(workspace.ImagePath(1), root / "images/cam1/day2/x.jpg");
+  EXPECT_EQ(workspace.MapPath(1, MapKind::kDepth, "geometric"),
+            root / "stereo/depth_maps/cam1/day2/x.jpg.geometric.bin");
+  EXPECT_EQ(workspace.MapPath(0, MapKind::kNormal, "photometric"),
+            root / "stereo/normal_maps/a.jpg.photometric.bin");
+  EXPECT_EQ(workspace.MapPath(0, MapKind::kConsistencyGraph, "geometric"),
+            root / "stereo/consistency_graphs/a.jpg.geometric.bin");
+  EXPECT_EQ(workspace.StatePath(), root / "stereo/hpm_mvs");
+}
+
+TEST(Workspace, MissingImageFilesAreNoError) {
+  TestWorkspace files;
+  files.AddImage("a.jpg", {0, 0, 0});
+  const Workspace workspace = files.Open();
+  EXPECT_TRUE(workspace.usable(0));
+  EXPECT_EQ(workspace.camera(0).width, 160);
+  EXPECT_THAT(files.Warnings(), IsEmpty());
+  EXPECT_THAT(files.Notes(), IsEmpty());
+}
+
+TEST(Workspace, ScalesCamerasToTheImageFilesWithOneNote) {
+  TestWorkspace files;
+  for (const char* name : {"a.png", "b.png", "c.png"})
+    files.AddImage(name, {0, 0, 0});
+  WriteText(files.path() / "images/a.png", PngHeader(160, 120));
+  WriteText(files.path() / "images/b.png", PngHeader(100, 75));
+  WriteText(files.path() / "images/c.png", PngHeader(320, 240));
+  const Workspace workspace = files.Open();
+  EXPECT_EQ(workspace.camera(0).width, 160);
+  EXPECT_EQ(workspace.camera(1).width, 100);
+  EXPECT_FLOAT_EQ(workspace.camera(1).fx, 62.5f);
+  EXPECT_FLOAT_EQ(workspace.camera(1).cx, 49.5f);
+  EXPECT_EQ(workspace.camera(2).width, 320);
+  EXPECT_THAT(files.Warnings(), IsEmpty());
+  EXPECT_THAT(files.Notes(), ElementsAre(HasSubstr("2 images")));
+  EXPECT_THAT(files.Notes()[0],
+              HasSubstr("b.png is 100x75, its camera 160x120"));
+}
+
+TEST(Workspace, WarnsOfOtherProportions) {
+  TestWorkspace files;
+  files.AddImage("turned.png", {0, 0, 0});
+  WriteText(files.path() / "images/turned.png", PngHeader(120, 160));
+  files.Open();
+  EXPECT_THAT(files.Warnings(),
+              ElementsAre(HasSubstr("turned.png is 120x160")));
+}
+
+TEST(Workspace, UnusableImagesKeepTheirIndexAndAreNamed) {
+  TestWorkspace files;
+  files.AddCamera(2, "OPENCV_FISHEYE 160 120 100 100 80 60 0 0 0 0");
+  files.AddCamera(3, "PINHOLE 160 120 -100 100 80 60");
+  files.AddImage("fisheye.jpg", {0, 0, 0}, 2);
+  files.AddImage("negative.jpg", {0, 0, 0}, 3);
+  files.AddImagePose("nan.jpg", "1 0 0 0 nan 0 0");
+  files.AddImagePose("zero.jpg", "0 0 0 0 0 0 0");
+  files.AddImage("good.jpg", {0, 0, 0});
+  files.AddImage("twin.jpg", {0, 0, 0});
+  const Workspace workspace = files.Open();
+  for (int i = 0; i < 4; ++i) EXPECT_FALSE(workspace.usable(i)) << i;
+  EXPECT_TRUE(workspace.usable(4));
+  EXPECT_TRUE(workspace.usable(5));  // the same place twice is legal
+  EXPECT_EQ(workspace.ImageIndex("good.jpg"), 4);
+  EXPECT_THAT(files.Warnings(),
+              ElementsAre(HasSubstr("fisheye.jpg"),
+                          HasSubstr("negative.jpg"),
+                          HasSubstr("nan.jpg"),
+                          HasSubstr("zero.jpg")));
+  EXPECT_THAT(files.Warnings()[0], HasSubstr("OPENCV_FISHEYE"));
+  EXPECT_THAT(files.Warnings()[0], HasSubstr("image_undistorter"));
+}
+
+TEST(Workspace, WithoutAnyUsableImageIsAnError) {
+  TestWorkspace files;
+  files.AddCamera(2, "SIMPLE_RADIAL 160 120 100 80 60 0.1");
+  files.AddImage("a.jpg", {0, 0, 0}, 2);
+  const auto error = ErrorOf([&] { files.Open(); });
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->code(), ErrorCode::kBadInput);
+  EXPECT_THAT(error->what(), HasSubstr("image_undistorter"));
+}
+
+TEST(Workspace, RefusesNamesThatLeaveItsFolders) {
+  for (const char* name : {"../a.jpg", "/etc/a.jpg", "x/../../a.jpg"}) {
+    TestWorkspace files;
+    files.AddImage(name, {0, 0, 0});
+    const auto error = ErrorOf([&] { files.Open(); });
+    ASSERT_TRUE(error) << name;
+    EXPECT_EQ(error->code(), ErrorCode::kBadInput);
+    EXPECT_THAT(error->what(), HasSubstr(name));
+  }
+}
+
+TEST(Workspace, RefusesTwoImagesOfOneName) {
+  TestWorkspace files;
+  files.AddImage("a.jpg", {0, 0, 0});
+  files.AddImage("a.jpg", {1, 0, 0});
+  const auto error = ErrorOf([&] { files.Open(); });
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->code(), ErrorCode::kBadInput);
+  EXPECT_THAT(error->what(), HasSubstr("a.jpg"));
+}
+
+TEST(Workspace, FormatNameIgnoresCaseAndOthersAreUsageErrors) {
+  TestWorkspace files;
+  files.AddImage("a.jpg", {0, 0, 0});
+  files.Open();
+  WorkspaceOptions options;
+  options.path = files.path();
+  options.format = "colMAP";
+  EXPECT_EQ(Workspace(options, nullptr).num_images(), 1);
+  options.format = "COLMAPS";
+  const auto error = ErrorOf([&] { Workspace(options, nullptr); });
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->code(), ErrorCode::kUsage);
+}
+
+TEST(Workspace, PmvsFolderGetsItsStereoFolderAndCfgFiles) {
+  const TemporaryFolder folder;
+  const std::string identity = "1 0 0\n0 1 0\n0 0 1\n0 0 0\n";
+  WriteText(folder.path() / "bundle.rd.out",
+            "# Bundle file v0.3\n2 1\n100 0 0\n" + identity + "110 0 0\n" +
+                identity + "0 0 -5\n1 2 3\n2 0 0 0 0 1 0 0 0\n");
+  WriteText(folder.path() / "visualize/00000000.jpg", PngHeader(160, 120));
+  WriteText(folder.path() / "visualize/00000001.jpg", PngHeader(80, 60));
+  WriteText(folder.path() / "my-option", "level 1\ntimages -1 0 2\n");
+  WorkspaceOptions options;
+  options.path = folder.path();
+  options.format = "pmvs";
+  options.pmvs_option_name = "my-option";
+  const Workspace workspace(options, nullptr);
+  ASSERT_EQ(workspace.num_images(), 2);
+  EXPECT_EQ(workspace.StereoPath(), folder.path() / "stereo-my-option");
+  EXPECT_EQ(workspace.ImagePath(1), folder.path() / "visualize/00000001.jpg");
+  EXPECT_EQ(workspace.camera(0).fx, 100);
+  EXPECT_EQ(workspace.camera(0).cx, 79.5f);
+  EXPECT_EQ(workspace.camera(1).cy, 29.5f);
+  EXPECT_EQ(ReadText(workspace.FusionCfgPath()),
+            "00000000.jpg\n00000001.jpg\n");
+  const auto entries = ReadPatchMatchCfg(workspace.PatchMatchCfgPath());
+  ASSERT_EQ(entries.size(), 2u);
+  EXPECT_EQ(entries[1].ref_name, "00000001.jpg");
+  EXPECT_EQ(entries[1].max_num_auto, 20);
+}
+
+TEST(Workspace, PmvsImageWithoutASizeIsNamed) {
+  const TemporaryFolder folder;
+  WriteText(folder.path() / "bundle.rd.out",
+            "# Bundle file v0.3\n1 0\n100 0 0\n1 0 0\n0 1 0\n0 0 1\n0 0 0\n");
+  WriteText(folder.path() / "option-all", "timages -1 0 1\n");
+  WorkspaceOptions options;
+  options.path = folder.path();
+  options.format = "PMVS";
+  const auto error = ErrorOf([&] { Workspace(options, nullptr); });
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->code(), ErrorCode::kBadInput);
+  EXPECT_THAT(error->what(), HasSubstr("00000000.jpg"));
+}
+
+}  // namespace
+}  // namespace hpm
