@@ -41,10 +41,10 @@ struct PatchMatchStereoOptions {
 
 // "--Hpm.*": what COLMAP does not have.
 struct HpmOptions {
-  std::string method = "hpm";       // see src/engine/schedule.h
+  std::string method = "nesp";      // see src/engine/schedule.h
   std::string cpu_target = "auto";  // auto, scalar, or a SIMD target of this machine
   int num_iterations = 3;           // red/black iterations of a photometric or prior pass
-  int num_geom_iterations = 2;      // of a geometric pass
+  int num_geom_iterations = 3;      // of a geometric pass
   int num_geom_passes = 2;
   double geom_weight = 0.1;         // lambda of the geometric term
   double geom_max_error = 5;        // pixels, cap of the geometric term

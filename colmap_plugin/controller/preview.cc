@@ -1,0 +1,79 @@
+#include "colmap_plugin/controller/preview.h"
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "colmap_plugin/formats/atomic_file.h"
+
+namespace hpm {
+namespace {
+
+void WriteJpeg(const std::filesystem::path& path, const cv::Mat& image) {
+  std::vector<unsigned char> bytes;
+  cv::imencode(".jpg", image, bytes, {cv::IMWRITE_JPEG_QUALITY, 92});
+  WriteFileAtomically(
+      path, std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+}
+
+float Percentile(std::vector<float> values, double share) {
+  const auto at = values.begin() + static_cast<ptrdiff_t>(share * (values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+cv::Mat ColorDepth(const Map& depth) {
+  std::vector<float> inverse;
+  for (const float z : depth.data) {
+    if (z > 0) inverse.push_back(1 / z);
+  }
+  cv::Mat color(depth.height, depth.width, CV_8UC3, cv::Scalar::all(0));
+  if (inverse.empty()) return color;
+  const float far = Percentile(inverse, 0.02);
+  const float near = Percentile(inverse, 0.98);
+  const float scale = near > far ? 255 / (near - far) : 0;
+  cv::Mat level(depth.height, depth.width, CV_8U, cv::Scalar(0));
+  cv::Mat valid(depth.height, depth.width, CV_8U, cv::Scalar(0));
+  for (int row = 0; row < depth.height; ++row) {
+    for (int col = 0; col < depth.width; ++col) {
+      const float z = depth.data[static_cast<size_t>(row) * depth.width + col];
+      if (!(z > 0)) continue;
+      level.at<uint8_t>(row, col) = cv::saturate_cast<uint8_t>((1 / z - far) * scale);
+      valid.at<uint8_t>(row, col) = 255;
+    }
+  }
+  cv::Mat mapped;
+  cv::applyColorMap(level, mapped, cv::COLORMAP_TURBO);
+  mapped.copyTo(color, valid);
+  return color;
+}
+
+cv::Mat ColorNormals(const Map& normal) {
+  cv::Mat color(normal.height, normal.width, CV_8UC3, cv::Scalar::all(0));
+  const size_t size = static_cast<size_t>(normal.width) * normal.height;
+  const auto channel = [](float v) { return cv::saturate_cast<uint8_t>(127.5f + 127.5f * v); };
+  for (int row = 0; row < normal.height; ++row) {
+    for (int col = 0; col < normal.width; ++col) {
+      const size_t i = static_cast<size_t>(row) * normal.width + col;
+      const float x = normal.data[i], y = normal.data[size + i], z = normal.data[2 * size + i];
+      if (x == 0 && y == 0 && z == 0) continue;
+      color.at<cv::Vec3b>(row, col) = {channel(-z), channel(y), channel(x)};
+    }
+  }
+  return color;
+}
+
+}  // namespace
+
+void WritePreviews(const std::filesystem::path& folder,
+                   const std::string& name,
+                   const DepthAndNormal& maps) {
+  WriteJpeg(folder / (name + ".depth.jpg"), ColorDepth(maps.depth));
+  WriteJpeg(folder / (name + ".normal.jpg"), ColorNormals(maps.normal));
+}
+
+}  // namespace hpm

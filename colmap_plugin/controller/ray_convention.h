@@ -1,0 +1,34 @@
+// Between the library's maps and COLMAP's files. Inside, the value of pixel
+// (col, row) belongs to the ray through the pixel's centre. COLMAP's dense code
+// and fusion put the value of (col, row) on the ray K^-1 (col, row, 1) of a K
+// whose pixel centres lie at +0.5, that is half a pixel up and left of the
+// centre. So every plane is evaluated on the other ray on writing and on
+// reading; both functions belong together (docs/architecture.md).
+#pragma once
+
+#include <vector>
+
+#include "colmap_plugin/formats/map_file.h"
+#include "src/engine/hypothesis_map.h"
+
+namespace hpm {
+
+struct DepthAndNormal {
+  Map depth;
+  Map normal;
+};
+
+// Pixels whose plane does not meet COLMAP's ray in front of the camera, and
+// pixels with keep[i] == false (if given), become 0.
+DepthAndNormal ToColmapMaps(const HypothesisMap& map,
+                            const Camera& camera,
+                            const std::vector<bool>* keep = nullptr);
+
+// Planes through the stored points; distance 0 where there is no depth. Both
+// maps must have the camera's size.
+HypothesisMap FromColmapMaps(const Map& depth, const Map& normal, const Camera& camera);
+
+// 1/z at the pixel centres, 0 = none.
+std::vector<float> InverseDepths(const HypothesisMap& map, const Camera& camera);
+
+}  // namespace hpm

@@ -1,0 +1,179 @@
+#include "colmap_plugin/controller/stage_runner.h"
+
+#include <algorithm>
+
+#include "colmap_plugin/controller/method_options.h"
+#include "colmap_plugin/controller/preview.h"
+#include "colmap_plugin/controller/ray_convention.h"
+#include "colmap_plugin/formats/consistency_graph.h"
+#include "colmap_plugin/formats/map_file.h"
+#include "colmap_plugin/workspace/stamp.h"
+#include "src/base/error.h"
+#include "src/engine/phase_timer.h"
+
+namespace hpm {
+namespace {
+
+// Hypotheses may leave the range of the sparse points by this much (specification 2.4).
+constexpr float kDepthMinSlack = 0.6f;
+constexpr float kDepthMaxSlack = 1.2f;
+
+}  // namespace
+
+nlohmann::json ToJson(const StageResult& result) {
+  return {{"valid_pixel_share", result.valid_pixel_share},
+          {"cost_evaluations_per_pixel", result.cost_evaluations_per_pixel},
+          {"seconds", result.seconds}};
+}
+
+StageRunner::StageRunner(const Workspace& workspace,
+                         const std::vector<StereoProblem>& problems,
+                         const Schedule& schedule,
+                         const ControllerOptions& options,
+                         const StagePlan& plan,
+                         InputCache* inputs,
+                         Backend* backend,
+                         const LogSink& log)
+    : workspace_(workspace),
+      problems_(problems),
+      schedule_(schedule),
+      options_(options),
+      plan_(plan),
+      inputs_(inputs),
+      backend_(backend),
+      log_(log),
+      params_(MakeMethodParams(options)) {}
+
+StageResult StageRunner::Run(int stage, int problem, const RunControl& control) {
+  StageResult result;
+  ViewSet views;
+  {
+    PhaseTimer timer(&result.seconds, "read");
+    views = MakeViews(stage, problem);
+  }
+  HypothesisMap map;
+  const int geometric_pass = plan_.stages()[stage].geometric_pass;
+  if (geometric_pass < 0) {
+    map = EstimatePhotometric(backend_, views, schedule_, params_, control, &result.seconds);
+  } else {
+    {
+      PhaseTimer timer(&result.seconds, "read");
+      map = ReadPrevious(stage, problem);
+    }
+    RefineGeometric(backend_, views, schedule_, schedule_.geometric[geometric_pass], params_,
+                    control, &map, &result.seconds);
+  }
+  Publish(stage, problem, map, views, control, &result);
+  return result;
+}
+
+ViewSet StageRunner::MakeViews(int stage, int problem) {
+  const StereoProblem& p = problems_[problem];
+  const std::string& name = workspace_.ImageName(p.ref_image);
+  ViewSet views;
+  views.ref = {workspace_.camera(p.ref_image), inputs_->Image(p.ref_image), nullptr};
+  if (views.ref.image == nullptr) {
+    throw Error(ErrorCode::kBadInput,
+                workspace_.ImagePath(p.ref_image).string() +
+                    ": cannot be read, so there are no maps for it; undistort the images again");
+  }
+  views.depth_min = kDepthMinSlack * p.depth_min;
+  views.depth_max = kDepthMaxSlack * p.depth_max;
+  views.random_key = CombineBits(static_cast<uint64_t>(options_.random_seed),
+                                 static_cast<uint64_t>(p.ref_image));
+  src_images_.clear();
+  for (const int src : p.src_images) {
+    View view = {workspace_.camera(src), inputs_->Image(src), nullptr};
+    if (view.image == nullptr) continue;
+    if (stage > 0) {
+      view.inverse_depth = inputs_->InverseDepth(src, plan_.Files(stage - 1, src));
+      if (view.inverse_depth == nullptr) {
+        log_(LogLevel::kWarning, name + ": source " + workspace_.ImageName(src) +
+                                     " has no " + plan_.stages()[stage - 1].name +
+                                     " maps and is used without geometric consistency");
+      }
+    }
+    views.srcs.push_back(std::move(view));
+    src_images_.push_back(src);
+  }
+  if (views.srcs.empty()) {
+    throw Error(ErrorCode::kBadInput,
+                workspace_.ImagePath(p.ref_image).string() +
+                    ": none of its source images can be read; undistort the images again");
+  }
+  return views;
+}
+
+HypothesisMap StageRunner::ReadPrevious(int stage, int problem) const {
+  const int image = problems_[problem].ref_image;
+  const StageFiles files = plan_.Files(stage - 1, image);
+  const Camera& camera = workspace_.camera(image);
+  const Map depth = ReadMap(files.depth);
+  const Map normal = ReadMap(files.normal);
+  for (const Map* map : {&depth, &normal}) {
+    if (map->width != camera.width || map->height != camera.height ||
+        map->channels != (map == &depth ? 1 : 3)) {
+      throw Error(ErrorCode::kBadInput, (map == &depth ? files.depth : files.normal).string() +
+                                            ": not the size of its image; delete it and run again");
+    }
+  }
+  return FromColmapMaps(depth, normal, camera);
+}
+
+void StageRunner::Publish(int stage,
+                          int problem,
+                          const HypothesisMap& map,
+                          const ViewSet& views,
+                          const RunControl& control,
+                          StageResult* result) {
+  const Stage& info = plan_.stages()[stage];
+  const int image = problems_[problem].ref_image;
+  const bool filter = info.is_final && options_.patch_match.filter;
+  std::vector<uint32_t> consistent;
+  std::vector<bool> keep;
+  if (filter) {
+    PhaseTimer timer(&result->seconds, "filter");
+    const FilterParams params =
+        MakeFilterParams(options_.patch_match, static_cast<int>(views.srcs.size()));
+    consistent = backend_->ConsistentViews(map, params, info.geometric_pass >= 0, control);
+    keep.resize(consistent.size());
+    for (size_t i = 0; i < keep.size(); ++i) {
+      keep[i] = __builtin_popcount(consistent[i]) >= params.min_num_consistent;
+    }
+  }
+  result->cost_evaluations_per_pixel = static_cast<double>(backend_->num_cost_evaluations()) /
+                                       static_cast<double>(map.planes.size());
+
+  PhaseTimer timer(&result->seconds, "write");
+  const DepthAndNormal maps = ToColmapMaps(map, views.ref.camera, filter ? &keep : nullptr);
+  result->valid_pixel_share =
+      1.0 - static_cast<double>(std::count(maps.depth.data.begin(), maps.depth.data.end(), 0.0f)) /
+                static_cast<double>(maps.depth.data.size());
+  const std::string& name = workspace_.ImageName(image);
+  if (info.geometric_pass < 0 || info.is_final) {
+    log_(LogLevel::kInfo, "Writing " + info.name + " output for " + name);
+  }
+  const StageFiles files = plan_.Files(stage, image);
+  WriteMap(files.normal, maps.normal);
+  WriteMap(files.depth, maps.depth);
+  if (plan_.WritesGraph(stage)) {
+    ConsistencyGraph graph = {map.width, map.height, {}};
+    for (size_t i = 0; i < consistent.size(); ++i) {
+      if (consistent[i] == 0 || maps.depth.data[i] == 0) continue;
+      graph.data.push_back(static_cast<int32_t>(i % map.width));
+      graph.data.push_back(static_cast<int32_t>(i / map.width));
+      graph.data.push_back(__builtin_popcount(consistent[i]));
+      for (size_t j = 0; j < src_images_.size(); ++j) {
+        if (consistent[i] >> j & 1) graph.data.push_back(src_images_[j]);
+      }
+    }
+    WriteConsistencyGraph(files.graph, graph);
+  }
+  if (options_.hpm.previews && info.is_final) {
+    WritePreviews(workspace_.StereoPath() / "previews", name, maps);
+  }
+  WriteStamp(workspace_.StatePath(), name, info.name, plan_.FingerprintOf(stage, problem),
+             ToJson(*result));
+}
+
+}  // namespace hpm

@@ -1,0 +1,59 @@
+// Computes one stage of one image: reads the inputs, runs the passes, filters,
+// publishes normal map, depth map, graph and stamp in this order.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "colmap_plugin/controller/input_cache.h"
+#include "colmap_plugin/controller/stages.h"
+#include "src/engine/backend.h"
+#include "src/engine/estimator.h"
+
+namespace hpm {
+
+struct StageResult {
+  double valid_pixel_share = 0;
+  double cost_evaluations_per_pixel = 0;
+  PhaseTimes seconds;  // wall, per phase
+};
+
+nlohmann::json ToJson(const StageResult& result);
+
+class StageRunner {
+ public:
+  // Keeps references to all arguments.
+  StageRunner(const Workspace& workspace,
+              const std::vector<StereoProblem>& problems,
+              const Schedule& schedule,
+              const ControllerOptions& options,
+              const StagePlan& plan,
+              InputCache* inputs,
+              Backend* backend,
+              const LogSink& log);
+
+  // Throws Error(kBadInput) if the reference or all of its sources cannot be read.
+  StageResult Run(int stage, int problem, const RunControl& control);
+
+ private:
+  ViewSet MakeViews(int stage, int problem);
+  HypothesisMap ReadPrevious(int stage, int problem) const;
+  void Publish(int stage,
+               int problem,
+               const HypothesisMap& map,
+               const ViewSet& views,
+               const RunControl& control,
+               StageResult* result);
+
+  const Workspace& workspace_;
+  const std::vector<StereoProblem>& problems_;
+  const Schedule& schedule_;
+  const ControllerOptions& options_;
+  const StagePlan& plan_;
+  InputCache* inputs_;
+  Backend* backend_;
+  const LogSink& log_;
+  const MethodParams params_;
+  std::vector<int> src_images_;  // image index of each source view of the current problem
+};
+
+}  // namespace hpm

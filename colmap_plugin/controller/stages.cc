@@ -1,0 +1,182 @@
+#include "colmap_plugin/controller/stages.h"
+
+#include <algorithm>
+#include <system_error>
+
+#include "colmap_plugin/controller/method_options.h"
+#include "colmap_plugin/formats/consistency_graph.h"
+#include "colmap_plugin/formats/map_file.h"
+#include "colmap_plugin/workspace/fingerprint.h"
+#include "colmap_plugin/workspace/stamp.h"
+#include "src/base/error.h"
+
+namespace hpm {
+namespace {
+
+// Raise when the same options give other maps.
+constexpr int kAlgorithmVersion = 1;
+
+std::vector<Stage> MakeStages(const Schedule& schedule, bool geom_consistency) {
+  std::vector<Stage> stages = {{"photometric", -1, false}};
+  if (geom_consistency) {
+    const int num_passes = static_cast<int>(schedule.geometric.size());
+    for (int i = 0; i < num_passes; ++i) {
+      const bool last = i + 1 == num_passes;
+      stages.push_back(
+          {last ? "geometric" : "geometric_" + std::to_string(i + 1), i, false});
+    }
+  }
+  stages.back().is_final = true;
+  return stages;
+}
+
+void AddImage(const Workspace& workspace, int image, Fingerprint* hash) {
+  const Camera& camera = workspace.camera(image);
+  std::error_code error;
+  const auto num_bytes = std::filesystem::file_size(workspace.ImagePath(image), error);
+  hash->AddString(workspace.ImageName(image)).AddInt(error ? -1 : static_cast<int64_t>(num_bytes));
+  hash->AddInt(camera.width).AddInt(camera.height);
+  for (const float v : {camera.fx, camera.fy, camera.cx, camera.cy}) hash->AddDouble(v);
+  for (const float v : camera.R.m) hash->AddDouble(v);
+  for (const float v : {camera.t.x, camera.t.y, camera.t.z}) hash->AddDouble(v);
+}
+
+void AddMethod(const MethodParams& params, Fingerprint* hash) {
+  hash->AddInt(params.patch_radius).AddInt(params.num_view_draws);
+  for (const float v : {params.sigma_spatial, params.sigma_color, params.depth_perturbation,
+                        params.normal_perturbation, params.prior_gamma, params.prior_beta,
+                        params.prior_depth_share, params.prior_angle}) {
+    hash->AddDouble(v);
+  }
+}
+
+void AddFilter(const PatchMatchStereoOptions& options, Fingerprint* hash) {
+  hash->AddInt(options.filter);
+  if (!options.filter) return;
+  hash->AddDouble(options.filter_min_ncc).AddDouble(options.filter_min_triangulation_angle);
+  hash->AddInt(options.filter_min_num_consistent);
+  hash->AddDouble(options.filter_geom_consistency_max_cost);
+}
+
+// What a stage of a problem depends on beside the stage before.
+std::string OwnFingerprint(const Workspace& workspace,
+                           const StereoProblem& problem,
+                           const Stage& stage,
+                           const Schedule& schedule,
+                           const ControllerOptions& options) {
+  Fingerprint hash;
+  hash.AddInt(kAlgorithmVersion).AddString(stage.name).AddInt(options.random_seed);
+  AddImage(workspace, problem.ref_image, &hash);
+  for (const int src : problem.src_images) AddImage(workspace, src, &hash);
+  hash.AddDouble(problem.depth_min).AddDouble(problem.depth_max);
+  const MethodParams params = MakeMethodParams(options);
+  AddMethod(params, &hash);
+  hash.AddString(options.hpm.method);
+  if (stage.geometric_pass < 0) {
+    hash.AddInt(options.hpm.num_iterations).AddInt(options.hpm.num_levels);
+  } else {
+    hash.AddInt(schedule.geometric[stage.geometric_pass].num_iterations);
+    hash.AddDouble(params.geom_weight).AddDouble(params.geom_max_error);
+  }
+  if (stage.is_final) AddFilter(options.patch_match, &hash);
+  return hash.Hex();
+}
+
+}  // namespace
+
+StagePlan::StagePlan(const Workspace& workspace,
+                     const std::vector<StereoProblem>& problems,
+                     const Schedule& schedule,
+                     const ControllerOptions& options)
+    : workspace_(workspace),
+      problems_(problems),
+      options_(options),
+      stages_(MakeStages(schedule, options.patch_match.geom_consistency)) {
+  const int num_stages = static_cast<int>(stages_.size());
+  const int num_problems = static_cast<int>(problems.size());
+  std::vector<int> problem_of_image(workspace.num_images(), -1);
+  for (int p = 0; p < num_problems; ++p) problem_of_image[problems[p].ref_image] = p;
+
+  for (int s = 0; s < num_stages; ++s) {
+    fingerprints_.emplace_back();
+    for (int p = 0; p < num_problems; ++p) {
+      Fingerprint hash;
+      hash.AddString(OwnFingerprint(workspace, problems[p], stages_[s], schedule, options));
+      if (s > 0) {
+        hash.AddString(fingerprints_[s - 1][p]);
+        for (const int src : problems[p].src_images) {
+          const int q = problem_of_image[src];
+          hash.AddString(q < 0 ? "" : fingerprints_[s - 1][q]);
+        }
+      }
+      fingerprints_[s].push_back(hash.Hex());
+    }
+  }
+
+  // Backwards: the maps COLMAP's users see must be finished; those of inner
+  // passes only if the pass after them still has to read them.
+  needed_.assign(num_stages, std::vector<bool>(num_problems, false));
+  for (int s = num_stages - 1; s >= 0; --s) {
+    const bool visible = s == 0 || stages_[s].is_final;
+    std::vector<bool> wanted(num_problems, visible);
+    for (int q = 0; q < num_problems && !visible; ++q) {
+      if (!needed_[s + 1][q]) continue;
+      wanted[q] = true;
+      for (const int src : problems[q].src_images) {
+        if (problem_of_image[src] >= 0) wanted[problem_of_image[src]] = true;
+      }
+    }
+    for (int p = 0; p < num_problems; ++p) {
+      needed_[s][p] = wanted[p] && (options.hpm.overwrite || !IsFinished(s, p));
+    }
+  }
+}
+
+int StagePlan::CountNeeded(int s) const {
+  return static_cast<int>(std::count(needed_[s].begin(), needed_[s].end(), true));
+}
+
+StageFiles StagePlan::Files(int s, int image) const {
+  const Stage& stage = stages_[s];
+  if (s == 0 || stage.is_final) {
+    return {workspace_.MapPath(image, MapKind::kDepth, stage.name),
+            workspace_.MapPath(image, MapKind::kNormal, stage.name),
+            workspace_.MapPath(image, MapKind::kConsistencyGraph, stage.name)};
+  }
+  const std::filesystem::path folder = workspace_.StatePath() / stage.name;
+  const std::string& name = workspace_.ImageName(image);
+  return {folder / (name + ".depth.bin"), folder / (name + ".normal.bin"), {}};
+}
+
+bool StagePlan::WritesGraph(int s) const {
+  return options_.patch_match.write_consistency_graph && (s == 0 || stages_[s].is_final);
+}
+
+bool StagePlan::IsFinished(int s, int p) {
+  const int image = problems_[p].ref_image;
+  const StageFiles files = Files(s, image);
+  std::error_code error;
+  if (!std::filesystem::exists(files.depth, error) ||
+      !std::filesystem::exists(files.normal, error)) {
+    return false;
+  }
+  const auto fingerprint =
+      ReadStampFingerprint(workspace_.StatePath(), workspace_.ImageName(image), stages_[s].name);
+  if (fingerprint != fingerprints_[s][p]) {
+    replaces_foreign_maps_ = true;
+    return false;
+  }
+  const Camera& camera = workspace_.camera(image);
+  const auto fits = [&](const MapHeader& header, int channels) {
+    return header.width == camera.width && header.height == camera.height &&
+           header.channels == channels;
+  };
+  try {
+    if (WritesGraph(s)) ReadConsistencyGraph(files.graph);
+    return fits(ReadMapHeader(files.depth), 1) && fits(ReadMapHeader(files.normal), 3);
+  } catch (const Error&) {
+    return false;  // torn or damaged: made anew
+  }
+}
+
+}  // namespace hpm
