@@ -198,7 +198,7 @@ TEST_F(RunLockTest, OneOfManyTakersIsInside) {
   Kill(owner);
   const std::string stale = ReadText(lock());
   const std::string inside = (folder_.path() / "inside").string();
-  constexpr int kNumRounds = 10, kNumTakers = 6;
+  constexpr int kNumRounds = 20, kNumTakers = 8;
   for (int round = 0; round < kNumRounds; ++round) {
     WriteText(lock(), stale);
     std::vector<pid_t> takers;
