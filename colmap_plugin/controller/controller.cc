@@ -114,7 +114,6 @@ PatchMatchController::PatchMatchController(const ControllerOptions& options,
 
 RunSummary PatchMatchController::Run() {
   const auto start = std::chrono::steady_clock::now();
-  const Schedule schedule = MakeSchedule(MakeScheduleOptions(options_));
   const std::unique_ptr<Backend> backend =
       MakeCpuBackend(options_.hpm.cpu_target, options_.patch_match.num_threads);
 
@@ -133,7 +132,7 @@ RunSummary PatchMatchController::Run() {
   const std::vector<StereoProblem> problems = ReadProblems(workspace, problem_options, log_);
   log_(LogLevel::kInfo, fmt::format("Configuration has {} problems...", problems.size()));
 
-  const StagePlan plan(workspace, problems, schedule, options_);
+  const StagePlan plan(workspace, problems, options_);
   PrepareOutputs(workspace, problems, BytesToWrite(workspace, problems, plan));
   if (plan.ReplacesForeignMaps()) {
     log_(LogLevel::kWarning,
@@ -150,7 +149,7 @@ RunSummary PatchMatchController::Run() {
                    (needs.working + needs.inputs) >> 20));
 
   InputCache inputs(workspace, cache_bytes, log_);
-  StageRunner runner(workspace, problems, schedule, options_, plan, &inputs, backend.get(), log_);
+  StageRunner runner(workspace, problems, options_, plan, &inputs, backend.get(), log_);
 
   RunSummary summary;
   summary.num_problems = static_cast<int>(problems.size());
@@ -160,6 +159,8 @@ RunSummary PatchMatchController::Run() {
   // Work of a stage of an image: one for each iteration of each pass, per pixel.
   const auto work_of = [&](int s, int p) {
     const Camera& camera = workspace.camera(problems[p].ref_image);
+    const Schedule schedule =
+        MakeSchedule(MakeScheduleOptions(options_), camera.width, camera.height);
     double iterations = 0;
     if (plan.stages()[s].geometric_pass < 0) {
       for (const Pass& pass : schedule.photometric) iterations += pass.num_iterations;

@@ -18,7 +18,8 @@ MethodParams MakeMethodParams(const ControllerOptions& options) {
 
 ScheduleOptions MakeScheduleOptions(const ControllerOptions& options) {
   return {options.hpm.method, options.hpm.num_iterations, options.hpm.num_geom_iterations,
-          options.hpm.num_geom_passes};
+          options.hpm.num_geom_passes,
+          options.hpm.num_levels};
 }
 
 FilterParams MakeFilterParams(const PatchMatchStereoOptions& options, int num_srcs) {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "colmap_plugin/formats/map_file.h"
-#include "src/engine/hypothesis_map.h"
+#include "src/image/hypothesis_map.h"
 
 namespace hpm {
 

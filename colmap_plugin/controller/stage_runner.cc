@@ -28,7 +28,6 @@ nlohmann::json ToJson(const StageResult& result) {
 
 StageRunner::StageRunner(const Workspace& workspace,
                          const std::vector<StereoProblem>& problems,
-                         const Schedule& schedule,
                          const ControllerOptions& options,
                          const StagePlan& plan,
                          InputCache* inputs,
@@ -36,7 +35,6 @@ StageRunner::StageRunner(const Workspace& workspace,
                          const LogSink& log)
     : workspace_(workspace),
       problems_(problems),
-      schedule_(schedule),
       options_(options),
       plan_(plan),
       inputs_(inputs),
@@ -51,16 +49,18 @@ StageResult StageRunner::Run(int stage, int problem, const RunControl& control) 
     PhaseTimer timer(&result.seconds, "read");
     views = MakeViews(stage, problem);
   }
+  const Schedule schedule = MakeSchedule(MakeScheduleOptions(options_), views.ref.camera.width,
+                                         views.ref.camera.height);
   HypothesisMap map;
   const int geometric_pass = plan_.stages()[stage].geometric_pass;
   if (geometric_pass < 0) {
-    map = EstimatePhotometric(backend_, views, schedule_, params_, control, &result.seconds);
+    map = EstimatePhotometric(backend_, views, schedule, params_, control, &result.seconds);
   } else {
     {
       PhaseTimer timer(&result.seconds, "read");
       map = ReadPrevious(stage, problem);
     }
-    RefineGeometric(backend_, views, schedule_, schedule_.geometric[geometric_pass], params_,
+    RefineGeometric(backend_, views, schedule, schedule.geometric[geometric_pass], params_,
                     control, &map, &result.seconds);
   }
   Publish(stage, problem, map, views, control, &result);

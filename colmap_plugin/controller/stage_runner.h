@@ -24,7 +24,6 @@ class StageRunner {
   // Keeps references to all arguments.
   StageRunner(const Workspace& workspace,
               const std::vector<StereoProblem>& problems,
-              const Schedule& schedule,
               const ControllerOptions& options,
               const StagePlan& plan,
               InputCache* inputs,
@@ -46,7 +45,6 @@ class StageRunner {
 
   const Workspace& workspace_;
   const std::vector<StereoProblem>& problems_;
-  const Schedule& schedule_;
   const ControllerOptions& options_;
   const StagePlan& plan_;
   InputCache* inputs_;

@@ -16,10 +16,9 @@ namespace {
 // Raise when the same options give other maps.
 constexpr int kAlgorithmVersion = 1;
 
-std::vector<Stage> MakeStages(const Schedule& schedule, bool geom_consistency) {
+std::vector<Stage> MakeStages(bool geom_consistency, int num_passes) {
   std::vector<Stage> stages = {{"photometric", -1, false}};
   if (geom_consistency) {
-    const int num_passes = static_cast<int>(schedule.geometric.size());
     for (int i = 0; i < num_passes; ++i) {
       const bool last = i + 1 == num_passes;
       stages.push_back(
@@ -62,7 +61,6 @@ void AddFilter(const PatchMatchStereoOptions& options, Fingerprint* hash) {
 std::string OwnFingerprint(const Workspace& workspace,
                            const StereoProblem& problem,
                            const Stage& stage,
-                           const Schedule& schedule,
                            const ControllerOptions& options) {
   Fingerprint hash;
   hash.AddInt(kAlgorithmVersion).AddString(stage.name).AddInt(options.random_seed);
@@ -75,7 +73,7 @@ std::string OwnFingerprint(const Workspace& workspace,
   if (stage.geometric_pass < 0) {
     hash.AddInt(options.hpm.num_iterations).AddInt(options.hpm.num_levels);
   } else {
-    hash.AddInt(schedule.geometric[stage.geometric_pass].num_iterations);
+    hash.AddInt(options.hpm.num_geom_iterations);
     hash.AddDouble(params.geom_weight).AddDouble(params.geom_max_error);
   }
   if (stage.is_final) AddFilter(options.patch_match, &hash);
@@ -86,12 +84,11 @@ std::string OwnFingerprint(const Workspace& workspace,
 
 StagePlan::StagePlan(const Workspace& workspace,
                      const std::vector<StereoProblem>& problems,
-                     const Schedule& schedule,
                      const ControllerOptions& options)
     : workspace_(workspace),
       problems_(problems),
       options_(options),
-      stages_(MakeStages(schedule, options.patch_match.geom_consistency)) {
+      stages_(MakeStages(options.patch_match.geom_consistency, options.hpm.num_geom_passes)) {
   const int num_stages = static_cast<int>(stages_.size());
   const int num_problems = static_cast<int>(problems.size());
   std::vector<int> problem_of_image(workspace.num_images(), -1);
@@ -101,7 +98,7 @@ StagePlan::StagePlan(const Workspace& workspace,
     fingerprints_.emplace_back();
     for (int p = 0; p < num_problems; ++p) {
       Fingerprint hash;
-      hash.AddString(OwnFingerprint(workspace, problems[p], stages_[s], schedule, options));
+      hash.AddString(OwnFingerprint(workspace, problems[p], stages_[s], options));
       if (s > 0) {
         hash.AddString(fingerprints_[s - 1][p]);
         for (const int src : problems[p].src_images) {

@@ -9,13 +9,12 @@
 
 #include "colmap_plugin/controller/options.h"
 #include "colmap_plugin/workspace/problem.h"
-#include "src/engine/schedule.h"
 
 namespace hpm {
 
 struct Stage {
   std::string name;  // "photometric", "geometric_1", ..., "geometric"
-  int geometric_pass = -1;  // index into Schedule::geometric; -1: photometric
+  int geometric_pass = -1;  // number of the geometric pass, from 0; -1: photometric
   bool is_final = false;    // filtered, if asked for; its maps are the result
 };
 
@@ -28,7 +27,6 @@ class StagePlan {
   // Looks at the files of the workspace; computes nothing.
   StagePlan(const Workspace& workspace,
             const std::vector<StereoProblem>& problems,
-            const Schedule& schedule,
             const ControllerOptions& options);
 
   const std::vector<Stage>& stages() const { return stages_; }

@@ -8,7 +8,7 @@
 
 #include "src/base/cancel.h"
 #include "src/core/consistency_filter.h"
-#include "src/engine/hypothesis_map.h"
+#include "src/image/hypothesis_map.h"
 #include "src/engine/pass.h"
 #include "src/engine/view.h"
 

@@ -1,6 +1,7 @@
 #include "src/engine/estimator.h"
 
 #include "src/engine/phase_timer.h"
+#include "src/prior/build_prior.h"
 
 namespace hpm {
 
@@ -22,9 +23,17 @@ HypothesisMap EstimatePhotometric(Backend* backend,
     pass_control.progress = [&](double fraction) {
       if (control.progress) control.progress((static_cast<double>(i) + fraction) / num_passes);
     };
-    PhaseTimer timer(times, "basic");
+    if (pass.kind == PassKind::kPrior) {
+      PhaseTimer timer(times, "build prior");
+      map.priors = BuildPrior(map, views.ref.camera, *views.ref.image, pass.level,
+                              {views.depth_min, views.depth_max});
+    } else {
+      map.priors.clear();
+    }
+    PhaseTimer timer(times, pass.kind == PassKind::kPrior ? "prior" : "basic");
     backend->Run(pass, schedule.pattern, &map, pass_control);
   }
+  map.priors = {};
   return map;
 }
 

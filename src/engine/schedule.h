@@ -14,6 +14,7 @@ struct ScheduleOptions {
   int num_iterations = 3;       // of basic and prior passes
   int num_geom_iterations = 3;  // of geometric passes
   int num_geom_passes = 2;
+  int num_levels = -1;          // of the prior hierarchy; -1: by image size
 };
 
 struct Schedule {
@@ -25,7 +26,7 @@ struct Schedule {
 // Names of all methods, for messages and help.
 std::vector<std::string> MethodNames();
 
-// Throws Error(kUsage) for an unknown method.
-Schedule MakeSchedule(const ScheduleOptions& options);
+// For images of this size. Throws Error(kUsage) for an unknown method.
+Schedule MakeSchedule(const ScheduleOptions& options, int width, int height);
 
 }  // namespace hpm

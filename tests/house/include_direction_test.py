@@ -25,7 +25,7 @@ ALLOWED = {
     "src/base": (),
     "src/core": (),
     "src/image": BASE + CORE,
-    "src/prior": BASE + CORE,
+    "src/prior": BASE + CORE + ("src/image",),
     "src/engine": LIBRARY,
     "src/cpu": LIBRARY,
     "cuda": LIBRARY,

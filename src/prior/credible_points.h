@@ -1,0 +1,20 @@
+// Credible points: pixels whose matching cost is small enough to span a prior
+// (HPM-MVS section 3.2; specification 7.2).
+#pragma once
+
+#include <vector>
+
+#include "src/prior/level.h"
+
+namespace hpm {
+
+struct CrediblePoint {
+  int col, row;   // level pixel
+  Vec3f position;  // reference camera frame, model units
+};
+
+// In each cell of 5x5 level pixels the one of smallest cost, if that is below
+// `max_cost`. Row-major over cells.
+std::vector<CrediblePoint> FindCrediblePoints(const LevelMap& level, float max_cost);
+
+}  // namespace hpm

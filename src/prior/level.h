@@ -1,0 +1,24 @@
+// Hypotheses at a reduced scale, for building priors (HPM-MVS section 3.3;
+// specification 7.1). Level l halves the image l times.
+#pragma once
+
+#include <vector>
+
+#include "src/image/hypothesis_map.h"
+
+namespace hpm {
+
+struct LevelMap {
+  Camera camera;  // of the level; integer (col, row) is the centre of its pixel
+  std::vector<float> depths;  // z at the pixel centre, 0 = none, row-major
+  std::vector<float> costs;
+};
+
+// Keeps the half-pixel: the centre of level pixel x lies at (x + 0.5) * 2^l - 0.5.
+Camera LevelCamera(const Camera& camera, int level);
+
+// In each block of full-resolution pixels the one of smallest cost speaks for
+// the level pixel, with its plane evaluated at the block's centre.
+LevelMap MakeLevel(const HypothesisMap& map, const Camera& camera, int level);
+
+}  // namespace hpm

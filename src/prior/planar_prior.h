@@ -1,0 +1,23 @@
+// Planar prior of a level: a plane for every pixel, spanned by credible points
+// (HPM-MVS section 3.2; specification 7.3 and 7.4).
+#pragma once
+
+#include <vector>
+
+#include "src/prior/credible_points.h"
+
+namespace hpm {
+
+struct PriorRange {
+  float depth_min, depth_max;  // model units
+};
+
+// One plane per level pixel, reference camera frame, distance 0 = none.
+// Pixels inside the Delaunay triangulation get the plane of their triangle; the
+// others that of their nearest credible points (first non-collinear triple of
+// the K = 6 nearest). Planes that leave `range` at the pixel are dropped.
+std::vector<Plane> MakePlanarPrior(const Camera& level_camera,
+                                   const std::vector<CrediblePoint>& points,
+                                   const PriorRange& range);
+
+}  // namespace hpm
