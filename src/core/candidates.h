@@ -12,9 +12,26 @@ namespace hpm {
 
 struct Candidates {
   Plane plane[kNumRegions];
-  uint32_t exists;  // bit i: region i has a sample inside the image
+  uint32_t exists;   // bit i: region i has a sample inside the image
+  uint32_t current;  // bit i: candidate i is nearly the current hypothesis
   float matrix[kNumRegions * kMaxViews];  // [region * num_views + view]
 };
+
+// Whether two planes move no sample of the patch by more than the bound in any
+// source view: then they share one row of costs. Converged neighbourhoods hold
+// many copies and near copies of one plane.
+HPM_HD bool NearlySame(const VisitParams& params,
+                       const PlaneSlope& a,
+                       const PlaneSlope& b,
+                       float col,
+                       float row) {
+  const float dcol = a.col - b.col;
+  const float drow = a.row - b.row;
+  const float here = dcol * col + drow * row + a.constant - b.constant;
+  const float radius = static_cast<float>(params.patch_radius);
+  return (fabsf(here) + radius * (fabsf(dcol) + fabsf(drow))) * params.parallax <
+         params.same_plane_bound;
+}
 
 // Best sample among offsets [begin, end) of a region, -1 if none is inside the
 // image or better than *best_cost. A walk ends at the border.
@@ -65,12 +82,18 @@ HPM_HD void CollectCandidates(const VisitParams& params,
                               int col,
                               int row,
                               Candidates* candidates) {
+  const float x = static_cast<float>(col);
+  const float y = static_cast<float>(row);
+  const PlaneSlope current = SlopeOf(params.ref, state.planes[row * state.width + col]);
+  PlaneSlope slope[kNumRegions];
+  int same_as[kNumRegions];  // the region whose row of costs this one shares
   float best_cost[kNumRegions];
   int count[kNumRegions];
   uint8_t batch_region[kNumRegions];
   Plane batch[kNumRegions];
   int batch_size = 0;
   candidates->exists = 0;
+  candidates->current = 0;
   for (int i = 0; i < kNumRegions; ++i) {
     best_cost[i] = 1e30f;
     count[i] = pattern.num_base[i];
@@ -78,6 +101,16 @@ HPM_HD void CollectCandidates(const VisitParams& params,
     if (best < 0) continue;
     candidates->exists |= 1u << i;
     candidates->plane[i] = state.planes[best];
+    slope[i] = SlopeOf(params.ref, state.planes[best]);
+    if (NearlySame(params, slope[i], current, x, y)) candidates->current |= 1u << i;
+    same_as[i] = i;
+    for (int j = 0; j < i && same_as[i] == i; ++j) {
+      if ((candidates->exists >> j & 1) && same_as[j] == j &&
+          NearlySame(params, slope[i], slope[j], x, y)) {
+        same_as[i] = j;
+      }
+    }
+    if (same_as[i] != i) continue;
     batch_region[batch_size] = static_cast<uint8_t>(i);
     batch[batch_size++] = state.planes[best];
   }
@@ -94,6 +127,15 @@ HPM_HD void CollectCandidates(const VisitParams& params,
             costs[b * params.num_views + j];
       }
     }
+    if (extension == 0) {
+      for (int i = 0; i < kNumRegions; ++i) {
+        if (!(candidates->exists >> i & 1) || same_as[i] == i) continue;
+        for (int j = 0; j < params.num_views; ++j) {
+          candidates->matrix[i * params.num_views + j] =
+              candidates->matrix[same_as[i] * params.num_views + j];
+        }
+      }
+    }
     if (extension == pattern.max_extensions) break;
     batch_size = 0;
     for (int i = 0; i < kNumRegions; ++i) {
@@ -107,6 +149,7 @@ HPM_HD void CollectCandidates(const VisitParams& params,
       count[i] *= 2;
       if (best < 0) continue;
       candidates->plane[i] = state.planes[best];
+      candidates->current &= ~(1u << i);
       batch_region[batch_size] = static_cast<uint8_t>(i);
       batch[batch_size++] = state.planes[best];
     }

@@ -38,6 +38,24 @@ HPM_HD void ViewProbabilities(const VisitParams& params,
   }
 }
 
+// Cost of a plane whose photometric costs in all views are known.
+template <class Cost>
+HPM_HD float WeightedRow(const VisitParams& params,
+                         const Cost& cost,
+                         const ViewWeights& weights,
+                         const Plane& plane,
+                         const float* row_of_costs) {
+  float sum = 0;
+  for (int k = 0; k < weights.num_views; ++k) {
+    float c = row_of_costs[weights.view[k]];
+    if (params.geometric) {
+      c += params.geometric_term.weight * cost.GeometricError(plane, weights.view[k]);
+    }
+    sum += weights.weight[k] * c;
+  }
+  return sum / weights.weight_sum;
+}
+
 // Higher is better; without a prior the order of the costs decides.
 struct Ranking {
   const VisitParams* params;
@@ -82,26 +100,26 @@ HPM_HD void UpdatePixel(const VisitParams& params,
 
   Plane best = state.planes[at];
   float best_cost;
-  WeightedCosts(params, cost, weights, &best, 1, &best_cost);
+  if (candidates.current != 0) {
+    int same = 0;
+    while (!(candidates.current >> same & 1)) ++same;
+    best_cost = WeightedRow(params, cost, weights, best,
+                            &candidates.matrix[same * params.num_views]);
+  } else {
+    WeightedCosts(params, cost, weights, &best, 1, &best_cost);
+  }
   float depth = -best.distance / Dot(best.normal, ray);
   float best_rank = rank(best_cost, depth, best.normal);
   bool propagated = false;
 
   // Candidates: their photometric costs are known already.
   for (int i = 0; i < kNumRegions; ++i) {
-    if (!(candidates.exists >> i & 1)) continue;
+    if (!((candidates.exists & ~candidates.current) >> i & 1)) continue;
     const Plane& plane = candidates.plane[i];
     const float z = -plane.distance / Dot(plane.normal, ray);
     if (!(z >= params.depth_min && z <= params.depth_max)) continue;
-    float sum = 0;
-    for (int k = 0; k < weights.num_views; ++k) {
-      float c = candidates.matrix[i * params.num_views + weights.view[k]];
-      if (params.geometric) {
-        c += params.geometric_term.weight * cost.GeometricError(plane, weights.view[k]);
-      }
-      sum += weights.weight[k] * c;
-    }
-    const float candidate_cost = sum / weights.weight_sum;
+    const float candidate_cost = WeightedRow(params, cost, weights, plane,
+                                             &candidates.matrix[i * params.num_views]);
     const float candidate_rank = rank(candidate_cost, z, plane.normal);
     if (candidate_rank > best_rank) {
       best = plane;

@@ -25,6 +25,9 @@ struct VisitParams {
   int num_view_draws;          // 15
   float depth_perturbation;    // relative, 0.02
   float normal_perturbation;   // radians per axis, 0.01 pi
+  float same_plane_bound;      // pixels; see NearlySame() in candidates.h
+  float parallax;              // pixels in a source view per unit of -1/z, largest of all views
+  int patch_radius;            // pixels
   bool geometric;              // add the geometric term
   GeometricTerm geometric_term;
   PriorTerm prior_term;

@@ -48,6 +48,9 @@ class CpuBackend : public Backend {
     visit_.num_view_draws = params.num_view_draws;
     visit_.depth_perturbation = params.depth_perturbation;
     visit_.normal_perturbation = params.normal_perturbation;
+    visit_.same_plane_bound = params.same_plane_bound;
+    visit_.parallax = views_->parallax();
+    visit_.patch_radius = params.patch_radius;
     visit_.geometric_term = {params.geom_weight, params.geom_max_error};
     visit_.prior_term = {params.prior_gamma, params.prior_beta,
                          params.prior_depth_share * (views.depth_max - views.depth_min),

@@ -21,6 +21,10 @@ class CpuViews {
   // Camera centre of a source view in the reference camera frame.
   const std::vector<Vec3f>& src_centers() const { return src_centers_; }
 
+  // Pixels that a source position moves per unit of -1/z of the plane, about: the
+  // largest focal length times baseline.
+  float parallax() const { return parallax_; }
+
   RefPatch PatchAt(int col, int row) const;
   float GeometricError(const PlaneSlope& slope, int view, float col, float row, float max_error) const;
 
@@ -37,6 +41,7 @@ class CpuViews {
   std::vector<ViewWarp> to_src_, to_ref_;
   std::vector<std::shared_ptr<const std::vector<float>>> inverse_depths_;
   std::vector<Vec3f> src_centers_;
+  float parallax_ = 0;
 };
 
 class CpuPixelCost {

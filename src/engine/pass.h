@@ -17,6 +17,7 @@ struct MethodParams {
   int num_view_draws = 15;
   float depth_perturbation = 0.02f;        // relative
   float normal_perturbation = 0.0314159f;  // radians per axis
+  float same_plane_bound = 0.05f;   // pixels; planes closer than this share their costs
   float geom_weight = 0.1f;         // cost per pixel of reprojection error
   float geom_max_error = 5;         // pixels
   float prior_gamma = 0.5f;
