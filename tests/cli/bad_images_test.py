@@ -1,0 +1,120 @@
+"""Images that are missing, damaged, huge, tiny or without any contrast."""
+import resource
+import unittest
+
+from png import bomb, constant, png
+from support import FAST, CliTest, map_files, read_map
+
+
+class BadImages(CliTest):
+    def assert_one_image_fails(self, damage):
+        """The image fails by name with exit 4, the others get maps, a repair completes."""
+        workspace = self.workspace()
+        path = workspace / "images/view02.png"
+        good = path.read_bytes()
+        damage(path)
+        result = self.run_tool(workspace, *FAST)
+        self.assert_exit(result, 4, "view02.png")
+        self.assert_no_partial_files(workspace)
+        self.assert_complete(workspace, ["view00.png", "view01.png", "view03.png"])
+        path.write_bytes(good)
+        self.assert_rerun_completes(workspace)
+
+    def test_a_missing_image(self):
+        self.assert_one_image_fails(lambda path: path.unlink())
+
+    def test_an_empty_image(self):
+        self.assert_one_image_fails(lambda path: path.write_bytes(b""))
+
+    def test_an_image_that_is_no_image(self):
+        self.assert_one_image_fails(lambda path: path.write_text("not a picture"))
+
+    def test_an_image_cut_after_its_header(self):
+        self.assert_one_image_fails(lambda path: path.write_bytes(path.read_bytes()[:60]))
+
+    def test_a_bomb_is_refused_before_it_is_decoded(self):
+        workspace = self.workspace()
+        path = workspace / "images/view02.png"
+        good = path.read_bytes()
+        path.write_bytes(bomb(65500, 65500))
+        limit = 4 << 30
+        result = self.run_tool(
+            workspace,
+            *FAST,
+            timeout=20,
+            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)),
+        )
+        self.assert_exit(result, 4, "view02.png")
+        self.assert_no_partial_files(workspace)
+        path.write_bytes(good)
+        self.assert_rerun_completes(workspace)
+
+    def test_allow_missing_files_leaves_a_missing_source_out(self):
+        workspace = self.workspace()
+        (workspace / "images/view02.png").unlink()
+        (workspace / "stereo/patch-match.cfg").write_text(
+            "".join(f"view0{i}.png\n__auto__, 20\n" for i in (0, 1, 3))
+        )
+        result = self.run_tool(workspace, *FAST, "--PatchMatchStereo.allow_missing_files=1")
+        self.assert_exit(result, 0)
+        self.assertIn("view02.png", result.stdout + result.stderr)
+        self.assert_complete(workspace, ["view00.png", "view01.png", "view03.png"])
+
+    def test_sixteen_bits_and_another_size_are_read(self):
+        workspace = self.workspace()
+        (workspace / "images/view00.png").write_bytes(png(96, 72, bytes(96 * 72 * 2), bits=16))
+        (workspace / "images/view01.png").write_bytes(constant(48, 36, 77))
+        self.assert_exit(self.run_tool(workspace, *FAST), 0)
+        self.assert_no_partial_files(workspace)
+        width, height, _, _ = read_map(workspace / "stereo/depth_maps/view01.png.geometric.bin")
+        self.assertEqual((width, height), (48, 36))
+
+    def test_images_without_contrast_give_finite_maps(self):
+        for grey in (0, 128, 255):
+            with self.subTest(grey=grey):
+                workspace = self.workspace()
+                for path in (workspace / "images").iterdir():
+                    path.write_bytes(constant(96, 72, grey))
+                self.assert_exit(self.run_tool(workspace, *FAST), 0)
+                self.assert_complete(workspace)
+
+    def test_images_smaller_than_the_window_give_finite_maps(self):
+        for width, height in ((8, 6), (33, 1), (1, 33), (1, 1)):
+            with self.subTest(size=(width, height)):
+                workspace = self.workspace(width=width, height=height)
+                (workspace / "stereo/patch-match.cfg").write_text(
+                    "".join(f"view0{i}.png\n__all__\n" for i in range(4))
+                )
+                self.assert_rerun_completes(
+                    workspace,
+                    *FAST,
+                    "--PatchMatchStereo.depth_min=3",
+                    "--PatchMatchStereo.depth_max=8",
+                )
+
+
+class FewImages(CliTest):
+    def test_an_image_without_sources_is_skipped_with_a_warning(self):
+        workspace = self.workspace(views=1)
+        for sources in ("__auto__, 20", "__all__"):
+            (workspace / "stereo/patch-match.cfg").write_text(f"view00.png\n{sources}\n")
+            result = self.run_tool(
+                workspace,
+                *FAST,
+                "--PatchMatchStereo.depth_min=1",
+                "--PatchMatchStereo.depth_max=10",
+            )
+            self.assert_exit(result, 0)
+            self.assertIn("view00.png", result.stderr)
+            self.assertEqual(map_files(workspace), {})
+
+    def test_one_source_is_enough(self):
+        workspace = self.workspace(views=2)
+        self.assert_exit(self.run_tool(workspace, *FAST), 0)
+        self.assert_complete(workspace)
+        values = read_map(workspace / "stereo/depth_maps/view00.png.geometric.bin")[3]
+        self.assertGreater(sum(v > 0 for v in values), len(values) / 4)
+
+
+if __name__ == "__main__":
+    unittest.main()

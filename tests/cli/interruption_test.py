@@ -1,0 +1,106 @@
+"""Signals, two runs on one workspace, folders that cannot be written, full disks."""
+import os
+import resource
+import shutil
+import signal
+import subprocess
+import time
+import unittest
+
+from support import FAST, SLOW, CliTest
+
+NOBODY = 65534
+
+
+class Signals(CliTest):
+    def assert_stops(self, sent, code):
+        workspace = self.workspace()
+        process = self.start_tool(workspace, *SLOW)
+        time.sleep(0.3)
+        begin = time.monotonic()
+        process.send_signal(sent)
+        self.assertEqual(process.wait(timeout=10), code)
+        self.assertLess(time.monotonic() - begin, 2)
+        self.assert_no_partial_files(workspace)
+        self.assert_rerun_completes(workspace)
+
+    def test_sigint_stops_within_two_seconds_with_130(self):
+        self.assert_stops(signal.SIGINT, 130)
+
+    def test_sigterm_stops_within_two_seconds_with_143(self):
+        self.assert_stops(signal.SIGTERM, 143)
+
+
+class Locking(CliTest):
+    def test_a_second_run_is_refused_until_the_first_is_gone(self):
+        workspace = self.workspace()
+        first = self.start_tool(workspace, *SLOW)
+        second = self.run_tool(workspace, *FAST)
+        self.assert_exit(second, 7, str(first.pid))
+        self.assertIsNone(first.poll(), "the first run must go on")
+        first.kill()
+        first.wait()
+        self.assert_rerun_completes(workspace)
+
+
+class Disks(CliTest):
+    def test_a_file_size_limit_is_exit_5_and_leaves_nothing_partial(self):
+        workspace = self.workspace()
+        limit = 60000  # a depth map of 96x72 fits, a normal map does not
+        result = self.run_tool(
+            workspace,
+            *FAST,
+            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)),
+        )
+        self.assert_exit(result, 5, "normal_maps/view00.png.photometric.bin")
+        self.assert_no_partial_files(workspace)
+        self.assert_rerun_completes(workspace)
+
+    @unittest.skipUnless(os.geteuid() == 0, "mounting a small disk needs root")
+    def test_a_full_disk_is_exit_5_and_leaves_nothing_partial(self):
+        workspace = self.workspace()
+        disk = workspace.parent / "disk"
+        disk.mkdir()
+        mounted = subprocess.run(
+            ["mount", "-t", "tmpfs", "-o", "size=1m", "none", disk], stderr=subprocess.PIPE
+        )
+        if mounted.returncode != 0:
+            self.skipTest("a tmpfs cannot be mounted here")
+        self.addCleanup(subprocess.run, ["umount", disk])
+        stereo = workspace / "stereo"
+        shutil.move(stereo, disk / "stereo")
+        stereo.symlink_to(disk / "stereo")
+        filler = disk / "filler"
+        filler.write_bytes(bytes(900_000))
+        result = self.run_tool(workspace, *FAST)
+        self.assert_exit(result, 5, str(stereo))
+        self.assert_no_partial_files(workspace)
+        filler.unlink()
+        # 4 images, 16 bytes a pixel, two stages: 0.9 MB fit now.
+        self.assert_rerun_completes(workspace)
+
+    def run_as_nobody(self, workspace):
+        options = {"user": NOBODY, "group": NOBODY, "extra_groups": []}
+        try:
+            subprocess.run(["true"], check=True, **options)
+            return self.run_tool(workspace, *FAST, **options)
+        except PermissionError:
+            self.skipTest("an unprivileged user cannot run the program here")
+
+    @unittest.skipUnless(os.geteuid() == 0, "becoming another user needs root")
+    def test_a_workspace_without_write_permission_is_exit_3_before_computing(self):
+        workspace = self.workspace()
+        result = self.run_as_nobody(workspace)
+        self.assert_exit(result, 3, str(workspace / "stereo"))
+        self.assertNotIn("Processing view", result.stdout)
+        self.assert_rerun_completes(workspace)
+
+    def test_missing_output_folders_are_created(self):
+        workspace = self.workspace()
+        for name in ("depth_maps", "normal_maps", "consistency_graphs"):
+            (workspace / "stereo" / name).rmdir()
+        self.assert_rerun_completes(workspace)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,92 @@
+"""The command line: help, wrong options, locale."""
+import os
+import subprocess
+import unittest
+
+from support import FAST, HPM_MVS, CliTest, map_files
+
+
+def run(*arguments, **keywords):
+    return subprocess.run(
+        [HPM_MVS, *arguments],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        timeout=60,
+        **keywords,
+    )
+
+
+class Help(CliTest):
+    def test_help_is_on_standard_output_with_exit_0(self):
+        for arguments in (["help"], ["patch_match_stereo", "--help"], ["patch_match_stereo", "-h"]):
+            result = run(*arguments)
+            self.assertEqual((result.returncode, result.stderr), (0, ""))
+            self.assertIn("--PatchMatchStereo.max_image_size", result.stdout)
+
+    def test_help_wins_over_other_options(self):
+        self.assertEqual(run("patch_match_stereo", "--workspace_path", "x", "--help").returncode, 0)
+
+
+class WrongOptions(CliTest):
+    def assert_usage_error(self, workspace, *options):
+        result = self.run_tool(workspace, *options)
+        self.assert_exit(result, 2, options[0].lstrip("-").split("=")[0])
+        self.assertEqual(map_files(workspace), {})
+
+    def test_each_is_exit_2_and_names_the_option(self):
+        workspace = self.workspace()
+        for options in (
+            ["--PatchMatchStereo.window_radius=-1"],
+            ["--PatchMatchStereo.window_radius=33"],
+            ["--PatchMatchStereo.window_radius=3.5"],
+            ["--PatchMatchStereo.window_step=3"],
+            ["--PatchMatchStereo.sigma_color=nan"],
+            ["--PatchMatchStereo.sigma_color=0"],
+            ["--PatchMatchStereo.num_samples=999999999999"],
+            ["--PatchMatchStereo.num_iterations=0"],
+            ["--PatchMatchStereo.cache_size=-1"],
+            ["--PatchMatchStereo.cache_size=1e999"],
+            ["--PatchMatchStereo.gpu_index=x"],
+            ["--PatchMatchStereo.filter=2"],
+            ["--PatchMatchStereo.filter_min_ncc=1,5"],
+            ["--PatchMatchStereo.min_triangulation_angle=180"],
+            ["--PatchMatchStereo.depth_min=2", "--PatchMatchStereo.depth_max=1"],
+            ["--PatchMatchStereo.depth_max=10"],
+            ["--Hpm.method=magic"],
+            ["--Hpm.cpu_target=abacus"],
+            ["--Hpm.num_iterations=0"],
+            ["--workspace_format=OTHER"],
+            ["--unknown=1"],
+        ):
+            with self.subTest(options):
+                self.assert_usage_error(workspace, *options)
+
+    def test_a_missing_workspace_option_is_exit_2(self):
+        result = run("patch_match_stereo")
+        self.assert_exit(result, 2, "workspace_path")
+
+    def test_a_missing_workspace_is_exit_3_and_named(self):
+        result = run("patch_match_stereo", "--workspace_path", "/nowhere/at/all")
+        self.assert_exit(result, 3, "/nowhere/at/all")
+
+    def test_an_unknown_command_is_exit_2(self):
+        self.assert_exit(run("stereo_fusion"), 2, "stereo_fusion")
+
+
+class Locale(CliTest):
+    def test_a_decimal_comma_changes_nothing(self):
+        installed = subprocess.run(["locale", "-a"], stdout=subprocess.PIPE, text=True).stdout
+        names = [n for n in installed.split() if n.lower().replace("-", "") == "de_de.utf8"]
+        if not names:
+            self.skipTest("the locale de_DE.UTF-8 is not installed")
+        options = [*FAST, "--PatchMatchStereo.filter_min_ncc=0.25"]
+        plain, german = self.workspace(), self.workspace()
+        self.assert_exit(self.run_tool(plain, *options), 0)
+        result = self.run_tool(german, *options, env={**os.environ, "LC_ALL": names[0]})
+        self.assert_exit(result, 0)
+        self.assert_same_maps(map_files(german), map_files(plain))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,54 @@
+"""Changes to the binary sparse model of a scene, byte by byte."""
+import struct
+
+
+def image_records(data):
+    """(offset of the record, offset of the name, offset of the points) per image."""
+    records = []
+    offset = 8
+    for _ in range(struct.unpack_from("<Q", data, 0)[0]):
+        name = offset + 64
+        points = data.index(b"\0", name) + 1
+        records.append((offset, name, points))
+        offset = points + 8 + 24 * struct.unpack_from("<Q", data, points)[0]
+    return records
+
+
+def set_pose_value(path, image, index, value):
+    """index 0..6: qw qx qy qz tx ty tz."""
+    data = bytearray(path.read_bytes())
+    struct.pack_into("<d", data, image_records(data)[image][0] + 4 + 8 * index, value)
+    path.write_bytes(data)
+
+
+def copy_pose(path, source, target):
+    data = bytearray(path.read_bytes())
+    records = image_records(data)
+    a, b = records[source][0] + 4, records[target][0] + 4
+    data[b : b + 56] = data[a : a + 56]
+    path.write_bytes(data)
+
+
+def rename_image(path, image, name):
+    """`name` as bytes, of any length."""
+    data = path.read_bytes()
+    _, begin, points = image_records(data)[image]
+    path.write_bytes(data[:begin] + name + b"\0" + data[points:])
+
+
+def set_camera_value(path, camera, index, value):
+    """index 0..3: fx fy cx cy of a PINHOLE camera."""
+    data = bytearray(path.read_bytes())
+    struct.pack_into("<d", data, 8 + 56 * camera + 24 + 8 * index, value)
+    path.write_bytes(data)
+
+
+def remove_points(folder):
+    """No sparse points at all, and no observations of them."""
+    (folder / "points3D.bin").write_bytes(struct.pack("<Q", 0))
+    path = folder / "images.bin"
+    data = path.read_bytes()
+    out = data[:8]
+    for begin, _, points in image_records(data):
+        out += data[begin:points] + struct.pack("<Q", 0)
+    path.write_bytes(out)
