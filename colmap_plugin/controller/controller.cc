@@ -1,17 +1,5 @@
 #include "colmap_plugin/controller/controller.h"
 
-#include <sys/resource.h>
-
-#include <algorithm>
-#include <chrono>
-#include <memory>
-#include <optional>
-#include <set>
-#include <utility>
-
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
-
 #include "colmap_plugin/controller/method_options.h"
 #include "colmap_plugin/controller/stage_runner.h"
 #include "colmap_plugin/formats/atomic_file.h"
@@ -22,6 +10,17 @@
 #include "src/cpu/cpu_backend.h"
 #include "src/engine/memory_plan.h"
 
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <sys/resource.h>
+
 namespace hpm {
 namespace {
 
@@ -31,7 +30,8 @@ uint64_t PeakMemoryBytes() {
   return static_cast<uint64_t>(usage.ru_maxrss) * 1024;
 }
 
-// Largest need over all problems: working memory, and the inputs of one problem.
+// Largest need over all problems: working memory, and the inputs of one
+// problem.
 struct MemoryNeeds {
   uint64_t working = 0;
   uint64_t inputs = 0;
@@ -47,7 +47,8 @@ MemoryNeeds LargestNeeds(const Workspace& workspace,
     uint64_t inputs = 0;
     for (const int src : problem.src_images) {
       const uint64_t pixels =
-          static_cast<uint64_t>(workspace.camera(src).width) * workspace.camera(src).height;
+          static_cast<uint64_t>(workspace.camera(src).width) *
+          workspace.camera(src).height;
       largest_src = std::max(largest_src, pixels);
       inputs += pixels * (geometric ? 1 + sizeof(float) : 1);
     }
@@ -64,6 +65,12 @@ MemoryNeeds LargestNeeds(const Workspace& workspace,
   return needs;
 }
 
+uint64_t CacheBytes(double gibibytes) {
+  constexpr double kMaxGibibytes = 1 << 20;
+  return static_cast<uint64_t>(std::min(gibibytes, kMaxGibibytes) *
+                               (1ull << 30));
+}
+
 uint64_t BytesToWrite(const Workspace& workspace,
                       const std::vector<StereoProblem>& problems,
                       const StagePlan& plan) {
@@ -71,7 +78,8 @@ uint64_t BytesToWrite(const Workspace& workspace,
   for (size_t s = 0; s < plan.stages().size(); ++s) {
     for (size_t p = 0; p < problems.size(); ++p) {
       if (plan.IsNeeded(static_cast<int>(s), static_cast<int>(p))) {
-        bytes += DepthAndNormalMapBytes(workspace.camera(problems[p].ref_image));
+        bytes +=
+            DepthAndNormalMapBytes(workspace.camera(problems[p].ref_image));
       }
     }
   }
@@ -82,7 +90,8 @@ uint64_t BytesToWrite(const Workspace& workspace,
 void RemoveInnerMaps(const Workspace& workspace, const StagePlan& plan) {
   std::error_code ignored;
   for (size_t s = 1; s + 1 < plan.stages().size(); ++s) {
-    std::filesystem::remove_all(workspace.StatePath() / plan.stages()[s].name, ignored);
+    std::filesystem::remove_all(workspace.StatePath() / plan.stages()[s].name,
+                                ignored);
   }
 }
 
@@ -129,43 +138,53 @@ RunSummary PatchMatchController::Run() {
   problem_options.depth_min = colmap.depth_min;
   problem_options.depth_max = colmap.depth_max;
   problem_options.min_triangulation_angle = colmap.min_triangulation_angle;
-  const std::vector<StereoProblem> problems = ReadProblems(workspace, problem_options, log_);
-  log_(LogLevel::kInfo, fmt::format("Configuration has {} problems...", problems.size()));
+  const std::vector<StereoProblem> problems =
+      ReadProblems(workspace, problem_options, log_);
+  log_(LogLevel::kInfo,
+       fmt::format("Configuration has {} problems...", problems.size()));
 
   const StagePlan plan(workspace, problems, options_);
   PrepareOutputs(workspace, problems, BytesToWrite(workspace, problems, plan));
   if (plan.ReplacesForeignMaps()) {
-    log_(LogLevel::kWarning,
-         "maps made with other options or by another program are computed anew");
+    log_(
+        LogLevel::kWarning,
+        "maps made with other options or by another program are computed anew");
   }
 
   const MemoryNeeds needs =
       LargestNeeds(workspace, problems, *backend, colmap.geom_consistency);
-  const uint64_t cache_bytes =
-      PlanCacheBytes(static_cast<uint64_t>(colmap.cache_size * (1ull << 30)), needs.working,
-                     needs.inputs, MemoryLimit());
+  const uint64_t cache_bytes = PlanCacheBytes(CacheBytes(colmap.cache_size),
+                                              needs.working,
+                                              needs.inputs,
+                                              MemoryLimit());
   log_(LogLevel::kInfo,
-       fmt::format("{}, method {}, about {} MB of memory", backend->Name(), options_.hpm.method,
+       fmt::format("{}, method {}, about {} MB of memory",
+                   backend->Name(),
+                   options_.hpm.method,
                    (needs.working + needs.inputs) >> 20));
 
   InputCache inputs(workspace, cache_bytes, log_);
-  StageRunner runner(workspace, problems, options_, plan, &inputs, backend.get(), log_);
+  StageRunner runner(
+      workspace, problems, options_, plan, &inputs, backend.get(), log_);
 
   RunSummary summary;
   summary.num_problems = static_cast<int>(problems.size());
   summary.cpu_target = backend->Name();
   const int num_stages = static_cast<int>(plan.stages().size());
   double total_work = 0, done_work = 0;
-  // Work of a stage of an image: one for each iteration of each pass, per pixel.
+  // Work of a stage of an image: one for each iteration of each pass, per
+  // pixel.
   const auto work_of = [&](int s, int p) {
     const Camera& camera = workspace.camera(problems[p].ref_image);
-    const Schedule schedule =
-        MakeSchedule(MakeScheduleOptions(options_), camera.width, camera.height);
+    const Schedule schedule = MakeSchedule(
+        MakeScheduleOptions(options_), camera.width, camera.height);
     double iterations = 0;
     if (plan.stages()[s].geometric_pass < 0) {
-      for (const Pass& pass : schedule.photometric) iterations += pass.num_iterations;
+      for (const Pass& pass : schedule.photometric)
+        iterations += pass.num_iterations;
     } else {
-      iterations = schedule.geometric[plan.stages()[s].geometric_pass].num_iterations;
+      iterations =
+          schedule.geometric[plan.stages()[s].geometric_pass].num_iterations;
     }
     return iterations * camera.width * camera.height;
   };
@@ -191,8 +210,12 @@ RunSummary PatchMatchController::Run() {
       const std::string& name = workspace.ImageName(problems[p].ref_image);
       ++number;
       if (failed.count(name) > 0) continue;
-      log_(LogLevel::kInfo, fmt::format("Processing view {} / {} for {} ({})", number, num_needed,
-                                        name, stage.name));
+      log_(LogLevel::kInfo,
+           fmt::format("Processing view {} / {} for {} ({})",
+                       number,
+                       num_needed,
+                       name,
+                       stage.name));
       ProgressEvent event = {stage.name, name, number, num_needed, 0};
       const double work = work_of(s, p);
       RunControl control;
@@ -221,12 +244,17 @@ RunSummary PatchMatchController::Run() {
       }
       done_work += work;
     }
-    progress_({stage.name, "", num_needed, num_needed, total_work > 0 ? done_work / total_work : 1});
+    progress_({stage.name,
+               "",
+               num_needed,
+               num_needed,
+               total_work > 0 ? done_work / total_work : 1});
   }
   if (failed.empty()) RemoveInnerMaps(workspace, plan);
 
   if (!colmap.allow_missing_files) {
-    for (const std::string& name : inputs.UnreadableImages()) failed.insert(name);
+    for (const std::string& name : inputs.UnreadableImages())
+      failed.insert(name);
   }
   summary.failed.assign(failed.begin(), failed.end());
   summary.num_computed = static_cast<int>(computed.size());
@@ -234,28 +262,31 @@ RunSummary PatchMatchController::Run() {
   for (const std::string& name : failed) {
     const int image = workspace.ImageIndex(name);
     for (int p = 0; p < summary.num_problems; ++p) {
-      if (problems[p].ref_image == image && computed.count(p) == 0) --summary.num_kept;
+      if (problems[p].ref_image == image && computed.count(p) == 0)
+        --summary.num_kept;
     }
   }
   summary.valid_pixel_share = num_final > 0 ? valid / num_final : 0;
   summary.ncc_evaluations_per_pixel = pixels > 0 ? evaluations / pixels : 0;
   summary.seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start)
+          .count();
   summary.peak_memory_bytes = PeakMemoryBytes();
 
   if (!computed.empty() || !failed.empty()) {
-    WriteRunRecord(workspace.StatePath(),
-                   {{"options", OptionsRecord(options_)},
-                    {"backend", backend->Name()},
-                    {"seconds", summary.seconds},
-                    {"seconds_per_phase", seconds},
-                    {"ncc_evaluations_per_pixel", summary.ncc_evaluations_per_pixel},
-                    {"valid_pixel_share", summary.valid_pixel_share},
-                    {"peak_memory_bytes", summary.peak_memory_bytes},
-                    {"images_computed", summary.num_computed},
-                    {"images_kept", summary.num_kept},
-                    {"images_failed", summary.failed},
-                    {"images", images}});
+    WriteRunRecord(
+        workspace.StatePath(),
+        {{"options", OptionsRecord(options_)},
+         {"backend", backend->Name()},
+         {"seconds", summary.seconds},
+         {"seconds_per_phase", seconds},
+         {"ncc_evaluations_per_pixel", summary.ncc_evaluations_per_pixel},
+         {"valid_pixel_share", summary.valid_pixel_share},
+         {"peak_memory_bytes", summary.peak_memory_bytes},
+         {"images_computed", summary.num_computed},
+         {"images_kept", summary.num_kept},
+         {"images_failed", summary.failed},
+         {"images", images}});
   }
   return summary;
 }

@@ -3,34 +3,38 @@
 // publishes maps atomically, stops cleanly when cancelled.
 #pragma once
 
+#include "colmap_plugin/controller/options.h"
+#include "src/base/cancel.h"
+#include "src/base/log.h"
+
 #include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
 
-#include "colmap_plugin/controller/options.h"
-#include "src/base/cancel.h"
-#include "src/base/log.h"
-
 namespace hpm {
 
-// Sent at the start, after every finished part of an image, and at the end of a stage.
+// Sent at the start, after every finished part of an image, and at the end of a
+// stage.
 struct ProgressEvent {
-  std::string stage;   // "photometric", "geometric 1/2", ...
-  std::string image;   // reference image worked on; empty at the end of a stage
+  std::string stage;  // "photometric", "geometric 1/2", ...
+  std::string image;  // reference image worked on; empty at the end of a stage
   int image_number = 0;  // 1-based, within the stage
   int num_images = 0;    // of the stage
-  double fraction = 0;   // of the whole run, 0..1, by estimated work (kept images cost nothing)
+  double fraction = 0;   // of the whole run, 0..1, by estimated work (kept
+                         // images cost nothing)
 };
 using ProgressSink = std::function<void(const ProgressEvent&)>;
 
 struct RunSummary {
   int num_problems = 0;
-  int num_computed = 0;  // images of which at least one stage was computed in this run
-  int num_kept = 0;      // images whose maps were all complete and current
-  std::vector<std::string> failed;  // names of images that could not be computed
+  int num_computed =
+      0;  // images of which at least one stage was computed in this run
+  int num_kept = 0;  // images whose maps were all complete and current
+  std::vector<std::string>
+      failed;  // names of images that could not be computed
   double seconds = 0;
-  double valid_pixel_share = 0;     // of the final maps written in this run, 0..1
+  double valid_pixel_share = 0;  // of the final maps written in this run, 0..1
   double ncc_evaluations_per_pixel = 0;
   uint64_t peak_memory_bytes = 0;
   std::string cpu_target;
@@ -44,8 +48,9 @@ class PatchMatchController {
                        ProgressSink progress,
                        const CancelToken& cancel);
 
-  // Throws Error(kBadInput, kLocked, kOutOfResources, kInterrupted ...). Images that
-  // fail one by one do not stop the others; they are listed in the summary.
+  // Throws Error(kBadInput, kLocked, kOutOfResources, kInterrupted ...). Images
+  // that fail one by one do not stop the others; they are listed in the
+  // summary.
   RunSummary Run();
 
  private:

@@ -1,10 +1,10 @@
 #include "colmap_plugin/controller/input_cache.h"
 
-#include <utility>
-
 #include "colmap_plugin/controller/ray_convention.h"
 #include "src/base/error.h"
 #include "src/image/load_image.h"
+
+#include <utility>
 
 namespace hpm {
 namespace {
@@ -14,7 +14,9 @@ constexpr uint64_t kImageShare = 5;
 
 }  // namespace
 
-InputCache::InputCache(const Workspace& workspace, uint64_t max_bytes, LogSink log)
+InputCache::InputCache(const Workspace& workspace,
+                       uint64_t max_bytes,
+                       LogSink log)
     : workspace_(workspace),
       log_(std::move(log)),
       images_(max_bytes / kImageShare),
@@ -25,8 +27,8 @@ std::shared_ptr<const GrayImage> InputCache::Image(int image) {
   if (auto cached = images_.Find(image)) return cached;
   try {
     const Camera& camera = workspace_.camera(image);
-    auto loaded = std::make_shared<const GrayImage>(
-        LoadGrayImage(workspace_.ImagePath(image), camera.width, camera.height));
+    auto loaded = std::make_shared<const GrayImage>(LoadGrayImage(
+        workspace_.ImagePath(image), camera.width, camera.height));
     images_.Insert(image, loaded, loaded->data.size());
     return loaded;
   } catch (const Error& error) {
@@ -36,15 +38,16 @@ std::shared_ptr<const GrayImage> InputCache::Image(int image) {
   }
 }
 
-std::shared_ptr<const std::vector<float>> InputCache::InverseDepth(int image,
-                                                                   const StageFiles& files) {
+std::shared_ptr<const std::vector<float>> InputCache::InverseDepth(
+    int image, const StageFiles& files) {
   if (auto cached = depths_.Find(image)) return cached;
   try {
     const Camera& camera = workspace_.camera(image);
     const Map depth = ReadMap(files.depth);
     const Map normal = ReadMap(files.normal);
-    if (depth.width != camera.width || depth.height != camera.height || depth.channels != 1 ||
-        normal.width != camera.width || normal.height != camera.height || normal.channels != 3) {
+    if (depth.width != camera.width || depth.height != camera.height ||
+        depth.channels != 1 || normal.width != camera.width ||
+        normal.height != camera.height || normal.channels != 3) {
       return nullptr;
     }
     auto inverse = std::make_shared<const std::vector<float>>(
@@ -58,7 +61,8 @@ std::shared_ptr<const std::vector<float>> InputCache::InverseDepth(int image,
 
 std::vector<std::string> InputCache::UnreadableImages() const {
   std::vector<std::string> names;
-  for (const int image : unreadable_) names.push_back(workspace_.ImageName(image));
+  for (const int image : unreadable_)
+    names.push_back(workspace_.ImageName(image));
   return names;
 }
 

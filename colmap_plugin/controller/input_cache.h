@@ -2,15 +2,15 @@
 // bound; images that cannot be read are remembered and reported once.
 #pragma once
 
-#include <memory>
-#include <set>
-#include <string>
-#include <vector>
-
 #include "colmap_plugin/controller/stages.h"
 #include "src/base/log.h"
 #include "src/engine/lru_cache.h"
 #include "src/image/gray_image.h"
+
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
 
 namespace hpm {
 
@@ -21,8 +21,10 @@ class InputCache {
   // At the size of the camera; null if the file cannot be read.
   std::shared_ptr<const GrayImage> Image(int image);
 
-  // 1/z at pixel centres of an image's maps; null if they are absent or damaged.
-  std::shared_ptr<const std::vector<float>> InverseDepth(int image, const StageFiles& files);
+  // 1/z at pixel centres of an image's maps; null if they are absent or
+  // damaged.
+  std::shared_ptr<const std::vector<float>> InverseDepth(
+      int image, const StageFiles& files);
 
   // Depth maps belong to one stage: forget those of the stage before.
   void ForgetDepths() { depths_.Clear(); }

@@ -9,7 +9,8 @@ MethodParams MakeMethodParams(const ControllerOptions& options) {
   MethodParams params;
   params.patch_radius = colmap.window_radius;
   params.sigma_spatial = static_cast<float>(
-      colmap.sigma_spatial > 0 ? colmap.sigma_spatial : static_cast<double>(colmap.window_radius));
+      colmap.sigma_spatial > 0 ? colmap.sigma_spatial
+                               : static_cast<double>(colmap.window_radius));
   params.num_view_draws = colmap.num_samples;
   params.geom_weight = static_cast<float>(options.hpm.geom_weight);
   params.geom_max_error = static_cast<float>(options.hpm.geom_max_error);
@@ -17,15 +18,19 @@ MethodParams MakeMethodParams(const ControllerOptions& options) {
 }
 
 ScheduleOptions MakeScheduleOptions(const ControllerOptions& options) {
-  return {options.hpm.method, options.hpm.num_iterations, options.hpm.num_geom_iterations,
+  return {options.hpm.method,
+          options.hpm.num_iterations,
+          options.hpm.num_geom_iterations,
           options.hpm.num_geom_passes,
           options.hpm.num_levels};
 }
 
-FilterParams MakeFilterParams(const PatchMatchStereoOptions& options, int num_srcs) {
+FilterParams MakeFilterParams(const PatchMatchStereoOptions& options,
+                              int num_srcs) {
   constexpr double kRadiansPerDegree = 3.14159265358979323846 / 180;
   return {static_cast<float>(options.filter_min_ncc),
-          static_cast<float>(options.filter_min_triangulation_angle * kRadiansPerDegree),
+          static_cast<float>(options.filter_min_triangulation_angle *
+                             kRadiansPerDegree),
           static_cast<float>(options.filter_geom_consistency_max_cost),
           std::min(options.filter_min_num_consistent, num_srcs)};
 }

@@ -12,6 +12,7 @@ ScheduleOptions MakeScheduleOptions(const ControllerOptions& options);
 
 // num_srcs: images used besides the reference; COLMAP lowers
 // filter_min_num_consistent to it.
-FilterParams MakeFilterParams(const PatchMatchStereoOptions& options, int num_srcs);
+FilterParams MakeFilterParams(const PatchMatchStereoOptions& options,
+                              int num_srcs);
 
 }  // namespace hpm

@@ -2,9 +2,9 @@
 // prefix; the option table in colmap_plugin/tool maps names to these members.
 #pragma once
 
-#include <string>
-
 #include "colmap_plugin/workspace/workspace.h"
+
+#include <string>
 
 namespace hpm {
 
@@ -41,16 +41,18 @@ struct PatchMatchStereoOptions {
 
 // "--Hpm.*": what COLMAP does not have.
 struct HpmOptions {
-  std::string method = "nesp";      // see src/engine/schedule.h
-  std::string cpu_target = "auto";  // auto, scalar, or a SIMD target of this machine
-  int num_iterations = 3;           // red/black iterations of a photometric or prior pass
-  int num_geom_iterations = 3;      // of a geometric pass
+  std::string method = "hpm";  // see src/engine/schedule.h
+  std::string cpu_target =
+      "auto";  // auto, scalar, or a SIMD target of this machine
+  int num_iterations =
+      3;  // red/black iterations of a photometric or prior pass
+  int num_geom_iterations = 3;  // of a geometric pass
   int num_geom_passes = 2;
-  double geom_weight = 0.1;         // lambda of the geometric term
-  double geom_max_error = 5;        // pixels, cap of the geometric term
-  int num_levels = -1;              // levels of the prior hierarchy; -1: by image size
-  bool previews = false;            // colour pictures of the maps in stereo/previews
-  bool overwrite = false;           // recompute maps that are complete
+  double geom_weight = 0.1;   // lambda of the geometric term
+  double geom_max_error = 5;  // pixels, cap of the geometric term
+  int num_levels = -1;     // levels of the prior hierarchy; -1: by image size
+  bool previews = false;   // colour pictures of the maps in stereo/previews
+  bool overwrite = false;  // recompute maps that are complete
 };
 
 struct ControllerOptions {

@@ -1,5 +1,7 @@
 #include "colmap_plugin/controller/preview.h"
 
+#include "colmap_plugin/formats/atomic_file.h"
+
 #include <algorithm>
 #include <string>
 #include <string_view>
@@ -8,8 +10,6 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "colmap_plugin/formats/atomic_file.h"
-
 namespace hpm {
 namespace {
 
@@ -17,11 +17,14 @@ void WriteJpeg(const std::filesystem::path& path, const cv::Mat& image) {
   std::vector<unsigned char> bytes;
   cv::imencode(".jpg", image, bytes, {cv::IMWRITE_JPEG_QUALITY, 92});
   WriteFileAtomically(
-      path, std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+      path,
+      std::string_view(reinterpret_cast<const char*>(bytes.data()),
+                       bytes.size()));
 }
 
 float Percentile(std::vector<float> values, double share) {
-  const auto at = values.begin() + static_cast<ptrdiff_t>(share * (values.size() - 1));
+  const auto at =
+      values.begin() + static_cast<ptrdiff_t>(share * (values.size() - 1));
   std::nth_element(values.begin(), at, values.end());
   return *at;
 }
@@ -42,7 +45,8 @@ cv::Mat ColorDepth(const Map& depth) {
     for (int col = 0; col < depth.width; ++col) {
       const float z = depth.data[static_cast<size_t>(row) * depth.width + col];
       if (!(z > 0)) continue;
-      level.at<uint8_t>(row, col) = cv::saturate_cast<uint8_t>((1 / z - far) * scale);
+      level.at<uint8_t>(row, col) =
+          cv::saturate_cast<uint8_t>((1 / z - far) * scale);
       valid.at<uint8_t>(row, col) = 255;
     }
   }
@@ -55,11 +59,14 @@ cv::Mat ColorDepth(const Map& depth) {
 cv::Mat ColorNormals(const Map& normal) {
   cv::Mat color(normal.height, normal.width, CV_8UC3, cv::Scalar::all(0));
   const size_t size = static_cast<size_t>(normal.width) * normal.height;
-  const auto channel = [](float v) { return cv::saturate_cast<uint8_t>(127.5f + 127.5f * v); };
+  const auto channel = [](float v) {
+    return cv::saturate_cast<uint8_t>(127.5f + 127.5f * v);
+  };
   for (int row = 0; row < normal.height; ++row) {
     for (int col = 0; col < normal.width; ++col) {
       const size_t i = static_cast<size_t>(row) * normal.width + col;
-      const float x = normal.data[i], y = normal.data[size + i], z = normal.data[2 * size + i];
+      const float x = normal.data[i], y = normal.data[size + i],
+                  z = normal.data[2 * size + i];
       if (x == 0 && y == 0 && z == 0) continue;
       color.at<cv::Vec3b>(row, col) = {channel(-z), channel(y), channel(x)};
     }

@@ -1,15 +1,16 @@
 // Colour pictures of depth and normal maps, for people.
 #pragma once
 
-#include <filesystem>
-
 #include "colmap_plugin/controller/ray_convention.h"
+
+#include <filesystem>
 
 namespace hpm {
 
 // Writes <folder>/<name>.depth.jpg (near = warm, far = cool, by inverse depth
 // between the 2nd and 98th percentile, black = none) and <name>.normal.jpg
-// (x, y, -z as red, green, blue). Throws Error(kBadInput) if a file cannot be written.
+// (x, y, -z as red, green, blue). Throws Error(kBadInput) if a file cannot be
+// written.
 void WritePreviews(const std::filesystem::path& folder,
                    const std::string& name,
                    const DepthAndNormal& maps);

@@ -22,7 +22,9 @@ DepthAndNormal ToColmapMaps(const HypothesisMap& map,
       const size_t i = static_cast<size_t>(row) * map.width + col;
       const Plane& plane = map.planes[i];
       if (!(plane.distance > 0) || (keep != nullptr && !(*keep)[i])) continue;
-      const float z = DepthAt(camera, plane, static_cast<float>(col) + kColmapShift,
+      const float z = DepthAt(camera,
+                              plane,
+                              static_cast<float>(col) + kColmapShift,
                               static_cast<float>(row) + kColmapShift);
       if (!std::isfinite(z) || !(z > 0)) continue;
       out.depth.data[i] = z;
@@ -34,7 +36,9 @@ DepthAndNormal ToColmapMaps(const HypothesisMap& map,
   return out;
 }
 
-HypothesisMap FromColmapMaps(const Map& depth, const Map& normal, const Camera& camera) {
+HypothesisMap FromColmapMaps(const Map& depth,
+                             const Map& normal,
+                             const Camera& camera) {
   HypothesisMap map(camera.width, camera.height);
   const size_t size = map.planes.size();
   for (int row = 0; row < map.height; ++row) {
@@ -42,23 +46,30 @@ HypothesisMap FromColmapMaps(const Map& depth, const Map& normal, const Camera& 
       const size_t i = static_cast<size_t>(row) * map.width + col;
       if (!(depth.data[i] > 0)) continue;
       const Plane plane = PlaneFromDepth(
-          camera, static_cast<float>(col) + kColmapShift, static_cast<float>(row) + kColmapShift,
+          camera,
+          static_cast<float>(col) + kColmapShift,
+          static_cast<float>(row) + kColmapShift,
           depth.data[i],
           {normal.data[i], normal.data[size + i], normal.data[2 * size + i]});
-      const float z = DepthAt(camera, plane, static_cast<float>(col), static_cast<float>(row));
-      if (std::isfinite(z) && z > 0 && plane.distance > 0) map.planes[i] = plane;
+      const float z = DepthAt(
+          camera, plane, static_cast<float>(col), static_cast<float>(row));
+      if (std::isfinite(z) && z > 0 && plane.distance > 0)
+        map.planes[i] = plane;
     }
   }
   return map;
 }
 
-std::vector<float> InverseDepths(const HypothesisMap& map, const Camera& camera) {
+std::vector<float> InverseDepths(const HypothesisMap& map,
+                                 const Camera& camera) {
   std::vector<float> inverse(map.planes.size(), 0.0f);
   for (int row = 0; row < map.height; ++row) {
     for (int col = 0; col < map.width; ++col) {
       const size_t i = static_cast<size_t>(row) * map.width + col;
       if (map.planes[i].distance > 0) {
-        inverse[i] = 1.0f / DepthAt(camera, map.planes[i], static_cast<float>(col),
+        inverse[i] = 1.0f / DepthAt(camera,
+                                    map.planes[i],
+                                    static_cast<float>(col),
                                     static_cast<float>(row));
       }
     }

@@ -6,10 +6,10 @@
 // reading; both functions belong together (docs/architecture.md).
 #pragma once
 
-#include <vector>
-
 #include "colmap_plugin/formats/map_file.h"
 #include "src/image/hypothesis_map.h"
+
+#include <vector>
 
 namespace hpm {
 
@@ -26,9 +26,12 @@ DepthAndNormal ToColmapMaps(const HypothesisMap& map,
 
 // Planes through the stored points; distance 0 where there is no depth. Both
 // maps must have the camera's size.
-HypothesisMap FromColmapMaps(const Map& depth, const Map& normal, const Camera& camera);
+HypothesisMap FromColmapMaps(const Map& depth,
+                             const Map& normal,
+                             const Camera& camera);
 
 // 1/z at the pixel centres, 0 = none.
-std::vector<float> InverseDepths(const HypothesisMap& map, const Camera& camera);
+std::vector<float> InverseDepths(const HypothesisMap& map,
+                                 const Camera& camera);
 
 }  // namespace hpm

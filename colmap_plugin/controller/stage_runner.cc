@@ -1,7 +1,5 @@
 #include "colmap_plugin/controller/stage_runner.h"
 
-#include <algorithm>
-
 #include "colmap_plugin/controller/method_options.h"
 #include "colmap_plugin/controller/preview.h"
 #include "colmap_plugin/controller/ray_convention.h"
@@ -11,10 +9,13 @@
 #include "src/base/error.h"
 #include "src/engine/phase_timer.h"
 
+#include <algorithm>
+
 namespace hpm {
 namespace {
 
-// Hypotheses may leave the range of the sparse points by this much (specification 2.4).
+// Hypotheses may leave the range of the sparse points by this much
+// (specification 2.4).
 constexpr float kDepthMinSlack = 0.6f;
 constexpr float kDepthMaxSlack = 1.2f;
 
@@ -42,26 +43,36 @@ StageRunner::StageRunner(const Workspace& workspace,
       log_(log),
       params_(MakeMethodParams(options)) {}
 
-StageResult StageRunner::Run(int stage, int problem, const RunControl& control) {
+StageResult StageRunner::Run(int stage,
+                             int problem,
+                             const RunControl& control) {
   StageResult result;
   ViewSet views;
   {
     PhaseTimer timer(&result.seconds, "read");
     views = MakeViews(stage, problem);
   }
-  const Schedule schedule = MakeSchedule(MakeScheduleOptions(options_), views.ref.camera.width,
+  const Schedule schedule = MakeSchedule(MakeScheduleOptions(options_),
+                                         views.ref.camera.width,
                                          views.ref.camera.height);
   HypothesisMap map;
   const int geometric_pass = plan_.stages()[stage].geometric_pass;
   if (geometric_pass < 0) {
-    map = EstimatePhotometric(backend_, views, schedule, params_, control, &result.seconds);
+    map = EstimatePhotometric(
+        backend_, views, schedule, params_, control, &result.seconds);
   } else {
     {
       PhaseTimer timer(&result.seconds, "read");
       map = ReadPrevious(stage, problem);
     }
-    RefineGeometric(backend_, views, schedule, schedule.geometric[geometric_pass], params_,
-                    control, &map, &result.seconds);
+    RefineGeometric(backend_,
+                    views,
+                    schedule,
+                    schedule.geometric[geometric_pass],
+                    params_,
+                    control,
+                    &map,
+                    &result.seconds);
   }
   Publish(stage, problem, map, views, control, &result);
   return result;
@@ -71,11 +82,13 @@ ViewSet StageRunner::MakeViews(int stage, int problem) {
   const StereoProblem& p = problems_[problem];
   const std::string& name = workspace_.ImageName(p.ref_image);
   ViewSet views;
-  views.ref = {workspace_.camera(p.ref_image), inputs_->Image(p.ref_image), nullptr};
+  views.ref = {
+      workspace_.camera(p.ref_image), inputs_->Image(p.ref_image), nullptr};
   if (views.ref.image == nullptr) {
     throw Error(ErrorCode::kBadInput,
                 workspace_.ImagePath(p.ref_image).string() +
-                    ": cannot be read, so there are no maps for it; undistort the images again");
+                    ": cannot be read, so there are no maps for it; undistort "
+                    "the images again");
   }
   views.depth_min = kDepthMinSlack * p.depth_min;
   views.depth_max = kDepthMaxSlack * p.depth_max;
@@ -86,11 +99,13 @@ ViewSet StageRunner::MakeViews(int stage, int problem) {
     View view = {workspace_.camera(src), inputs_->Image(src), nullptr};
     if (view.image == nullptr) continue;
     if (stage > 0) {
-      view.inverse_depth = inputs_->InverseDepth(src, plan_.Files(stage - 1, src));
+      view.inverse_depth =
+          inputs_->InverseDepth(src, plan_.Files(stage - 1, src));
       if (view.inverse_depth == nullptr) {
-        log_(LogLevel::kWarning, name + ": source " + workspace_.ImageName(src) +
-                                     " has no " + plan_.stages()[stage - 1].name +
-                                     " maps and is used without geometric consistency");
+        log_(LogLevel::kWarning,
+             name + ": source " + workspace_.ImageName(src) + " has no " +
+                 plan_.stages()[stage - 1].name +
+                 " maps and is used without geometric consistency");
       }
     }
     views.srcs.push_back(std::move(view));
@@ -99,7 +114,8 @@ ViewSet StageRunner::MakeViews(int stage, int problem) {
   if (views.srcs.empty()) {
     throw Error(ErrorCode::kBadInput,
                 workspace_.ImagePath(p.ref_image).string() +
-                    ": none of its source images can be read; undistort the images again");
+                    ": none of its source images can be read; undistort the "
+                    "images again");
   }
   return views;
 }
@@ -113,8 +129,9 @@ HypothesisMap StageRunner::ReadPrevious(int stage, int problem) const {
   for (const Map* map : {&depth, &normal}) {
     if (map->width != camera.width || map->height != camera.height ||
         map->channels != (map == &depth ? 1 : 3)) {
-      throw Error(ErrorCode::kBadInput, (map == &depth ? files.depth : files.normal).string() +
-                                            ": not the size of its image; delete it and run again");
+      throw Error(ErrorCode::kBadInput,
+                  (map == &depth ? files.depth : files.normal).string() +
+                      ": not the size of its image; delete it and run again");
     }
   }
   return FromColmapMaps(depth, normal, camera);
@@ -133,21 +150,25 @@ void StageRunner::Publish(int stage,
   std::vector<bool> keep;
   if (filter) {
     PhaseTimer timer(&result->seconds, "filter");
-    const FilterParams params =
-        MakeFilterParams(options_.patch_match, static_cast<int>(views.srcs.size()));
-    consistent = backend_->ConsistentViews(map, params, info.geometric_pass >= 0, control);
+    const FilterParams params = MakeFilterParams(
+        options_.patch_match, static_cast<int>(views.srcs.size()));
+    consistent = backend_->ConsistentViews(
+        map, params, info.geometric_pass >= 0, control);
     keep.resize(consistent.size());
     for (size_t i = 0; i < keep.size(); ++i) {
       keep[i] = __builtin_popcount(consistent[i]) >= params.min_num_consistent;
     }
   }
-  result->cost_evaluations_per_pixel = static_cast<double>(backend_->num_cost_evaluations()) /
-                                       static_cast<double>(map.planes.size());
+  result->cost_evaluations_per_pixel =
+      static_cast<double>(backend_->num_cost_evaluations()) /
+      static_cast<double>(map.planes.size());
 
   PhaseTimer timer(&result->seconds, "write");
-  const DepthAndNormal maps = ToColmapMaps(map, views.ref.camera, filter ? &keep : nullptr);
+  const DepthAndNormal maps =
+      ToColmapMaps(map, views.ref.camera, filter ? &keep : nullptr);
   result->valid_pixel_share =
-      1.0 - static_cast<double>(std::count(maps.depth.data.begin(), maps.depth.data.end(), 0.0f)) /
+      1.0 - static_cast<double>(std::count(
+                maps.depth.data.begin(), maps.depth.data.end(), 0.0f)) /
                 static_cast<double>(maps.depth.data.size());
   const std::string& name = workspace_.ImageName(image);
   if (info.geometric_pass < 0 || info.is_final) {
@@ -172,7 +193,10 @@ void StageRunner::Publish(int stage,
   if (options_.hpm.previews && info.is_final) {
     WritePreviews(workspace_.StereoPath() / "previews", name, maps);
   }
-  WriteStamp(workspace_.StatePath(), name, info.name, plan_.FingerprintOf(stage, problem),
+  WriteStamp(workspace_.StatePath(),
+             name,
+             info.name,
+             plan_.FingerprintOf(stage, problem),
              ToJson(*result));
 }
 

@@ -2,12 +2,12 @@
 // publishes normal map, depth map, graph and stamp in this order.
 #pragma once
 
-#include <nlohmann/json.hpp>
-
 #include "colmap_plugin/controller/input_cache.h"
 #include "colmap_plugin/controller/stages.h"
 #include "src/engine/backend.h"
 #include "src/engine/estimator.h"
+
+#include <nlohmann/json.hpp>
 
 namespace hpm {
 
@@ -30,7 +30,8 @@ class StageRunner {
               Backend* backend,
               const LogSink& log);
 
-  // Throws Error(kBadInput) if the reference or all of its sources cannot be read.
+  // Throws Error(kBadInput) if the reference or all of its sources cannot be
+  // read.
   StageResult Run(int stage, int problem, const RunControl& control);
 
  private:
@@ -51,7 +52,8 @@ class StageRunner {
   Backend* backend_;
   const LogSink& log_;
   const MethodParams params_;
-  std::vector<int> src_images_;  // image index of each source view of the current problem
+  std::vector<int>
+      src_images_;  // image index of each source view of the current problem
 };
 
 }  // namespace hpm

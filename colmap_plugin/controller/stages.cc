@@ -1,14 +1,14 @@
 #include "colmap_plugin/controller/stages.h"
 
-#include <algorithm>
-#include <system_error>
-
 #include "colmap_plugin/controller/method_options.h"
 #include "colmap_plugin/formats/consistency_graph.h"
 #include "colmap_plugin/formats/map_file.h"
 #include "colmap_plugin/workspace/fingerprint.h"
 #include "colmap_plugin/workspace/stamp.h"
 #include "src/base/error.h"
+
+#include <algorithm>
+#include <system_error>
 
 namespace hpm {
 namespace {
@@ -22,7 +22,9 @@ std::vector<Stage> MakeStages(bool geom_consistency, int num_passes) {
     for (int i = 0; i < num_passes; ++i) {
       const bool last = i + 1 == num_passes;
       stages.push_back(
-          {last ? "geometric" : "geometric_" + std::to_string(i + 1), i, false});
+          {last ? "geometric" : "geometric_" + std::to_string(i + 1),
+           i,
+           false});
     }
   }
   stages.back().is_final = true;
@@ -32,19 +34,27 @@ std::vector<Stage> MakeStages(bool geom_consistency, int num_passes) {
 void AddImage(const Workspace& workspace, int image, Fingerprint* hash) {
   const Camera& camera = workspace.camera(image);
   std::error_code error;
-  const auto num_bytes = std::filesystem::file_size(workspace.ImagePath(image), error);
-  hash->AddString(workspace.ImageName(image)).AddInt(error ? -1 : static_cast<int64_t>(num_bytes));
+  const auto num_bytes =
+      std::filesystem::file_size(workspace.ImagePath(image), error);
+  hash->AddString(workspace.ImageName(image))
+      .AddInt(error ? -1 : static_cast<int64_t>(num_bytes));
   hash->AddInt(camera.width).AddInt(camera.height);
-  for (const float v : {camera.fx, camera.fy, camera.cx, camera.cy}) hash->AddDouble(v);
+  for (const float v : {camera.fx, camera.fy, camera.cx, camera.cy})
+    hash->AddDouble(v);
   for (const float v : camera.R.m) hash->AddDouble(v);
   for (const float v : {camera.t.x, camera.t.y, camera.t.z}) hash->AddDouble(v);
 }
 
 void AddMethod(const MethodParams& params, Fingerprint* hash) {
   hash->AddInt(params.patch_radius).AddInt(params.num_view_draws);
-  for (const float v : {params.sigma_spatial, params.sigma_color, params.depth_perturbation,
-                        params.normal_perturbation, params.prior_gamma, params.prior_beta,
-                        params.prior_depth_share, params.prior_angle}) {
+  for (const float v : {params.sigma_spatial,
+                        params.sigma_color,
+                        params.depth_perturbation,
+                        params.normal_perturbation,
+                        params.prior_gamma,
+                        params.prior_beta,
+                        params.prior_depth_share,
+                        params.prior_angle}) {
     hash->AddDouble(v);
   }
 }
@@ -52,7 +62,8 @@ void AddMethod(const MethodParams& params, Fingerprint* hash) {
 void AddFilter(const PatchMatchStereoOptions& options, Fingerprint* hash) {
   hash->AddInt(options.filter);
   if (!options.filter) return;
-  hash->AddDouble(options.filter_min_ncc).AddDouble(options.filter_min_triangulation_angle);
+  hash->AddDouble(options.filter_min_ncc)
+      .AddDouble(options.filter_min_triangulation_angle);
   hash->AddInt(options.filter_min_num_consistent);
   hash->AddDouble(options.filter_geom_consistency_max_cost);
 }
@@ -63,7 +74,9 @@ std::string OwnFingerprint(const Workspace& workspace,
                            const Stage& stage,
                            const ControllerOptions& options) {
   Fingerprint hash;
-  hash.AddInt(kAlgorithmVersion).AddString(stage.name).AddInt(options.random_seed);
+  hash.AddInt(kAlgorithmVersion)
+      .AddString(stage.name)
+      .AddInt(options.random_seed);
   AddImage(workspace, problem.ref_image, &hash);
   for (const int src : problem.src_images) AddImage(workspace, src, &hash);
   hash.AddDouble(problem.depth_min).AddDouble(problem.depth_max);
@@ -88,17 +101,20 @@ StagePlan::StagePlan(const Workspace& workspace,
     : workspace_(workspace),
       problems_(problems),
       options_(options),
-      stages_(MakeStages(options.patch_match.geom_consistency, options.hpm.num_geom_passes)) {
+      stages_(MakeStages(options.patch_match.geom_consistency,
+                         options.hpm.num_geom_passes)) {
   const int num_stages = static_cast<int>(stages_.size());
   const int num_problems = static_cast<int>(problems.size());
   std::vector<int> problem_of_image(workspace.num_images(), -1);
-  for (int p = 0; p < num_problems; ++p) problem_of_image[problems[p].ref_image] = p;
+  for (int p = 0; p < num_problems; ++p)
+    problem_of_image[problems[p].ref_image] = p;
 
   for (int s = 0; s < num_stages; ++s) {
     fingerprints_.emplace_back();
     for (int p = 0; p < num_problems; ++p) {
       Fingerprint hash;
-      hash.AddString(OwnFingerprint(workspace, problems[p], stages_[s], options));
+      hash.AddString(
+          OwnFingerprint(workspace, problems[p], stages_[s], options));
       if (s > 0) {
         hash.AddString(fingerprints_[s - 1][p]);
         for (const int src : problems[p].src_images) {
@@ -130,7 +146,8 @@ StagePlan::StagePlan(const Workspace& workspace,
 }
 
 int StagePlan::CountNeeded(int s) const {
-  return static_cast<int>(std::count(needed_[s].begin(), needed_[s].end(), true));
+  return static_cast<int>(
+      std::count(needed_[s].begin(), needed_[s].end(), true));
 }
 
 StageFiles StagePlan::Files(int s, int image) const {
@@ -146,7 +163,8 @@ StageFiles StagePlan::Files(int s, int image) const {
 }
 
 bool StagePlan::WritesGraph(int s) const {
-  return options_.patch_match.write_consistency_graph && (s == 0 || stages_[s].is_final);
+  return options_.patch_match.write_consistency_graph &&
+         (s == 0 || stages_[s].is_final);
 }
 
 bool StagePlan::IsFinished(int s, int p) {
@@ -157,8 +175,8 @@ bool StagePlan::IsFinished(int s, int p) {
       !std::filesystem::exists(files.normal, error)) {
     return false;
   }
-  const auto fingerprint =
-      ReadStampFingerprint(workspace_.StatePath(), workspace_.ImageName(image), stages_[s].name);
+  const auto fingerprint = ReadStampFingerprint(
+      workspace_.StatePath(), workspace_.ImageName(image), stages_[s].name);
   if (fingerprint != fingerprints_[s][p]) {
     replaces_foreign_maps_ = true;
     return false;
@@ -170,7 +188,8 @@ bool StagePlan::IsFinished(int s, int p) {
   };
   try {
     if (WritesGraph(s)) ReadConsistencyGraph(files.graph);
-    return fits(ReadMapHeader(files.depth), 1) && fits(ReadMapHeader(files.normal), 3);
+    return fits(ReadMapHeader(files.depth), 1) &&
+           fits(ReadMapHeader(files.normal), 3);
   } catch (const Error&) {
     return false;  // torn or damaged: made anew
   }

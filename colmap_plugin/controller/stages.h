@@ -1,21 +1,22 @@
 // The stages of a run and what is left to do in each: photometric, then one per
-// geometric pass. A stage of an image is finished when its maps are complete and
-// its stamp carries the fingerprint of everything the maps depend on.
+// geometric pass. A stage of an image is finished when its maps are complete
+// and its stamp carries the fingerprint of everything the maps depend on.
 #pragma once
+
+#include "colmap_plugin/controller/options.h"
+#include "colmap_plugin/workspace/problem.h"
 
 #include <filesystem>
 #include <string>
 #include <vector>
 
-#include "colmap_plugin/controller/options.h"
-#include "colmap_plugin/workspace/problem.h"
-
 namespace hpm {
 
 struct Stage {
   std::string name;  // "photometric", "geometric_1", ..., "geometric"
-  int geometric_pass = -1;  // number of the geometric pass, from 0; -1: photometric
-  bool is_final = false;    // filtered, if asked for; its maps are the result
+  int geometric_pass =
+      -1;  // number of the geometric pass, from 0; -1: photometric
+  bool is_final = false;  // filtered, if asked for; its maps are the result
 };
 
 struct StageFiles {
@@ -30,13 +31,15 @@ class StagePlan {
             const ControllerOptions& options);
 
   const std::vector<Stage>& stages() const { return stages_; }
-  // Whether problem p has to be computed in stage s: its final maps, or maps that
-  // others still need, are missing, damaged or made with other options.
+  // Whether problem p has to be computed in stage s: its final maps, or maps
+  // that others still need, are missing, damaged or made with other options.
   bool IsNeeded(int s, int p) const { return needed_[s][p]; }
   int CountNeeded(int s) const;
   // True if maps exist that were made with other options or by another program.
   bool ReplacesForeignMaps() const { return replaces_foreign_maps_; }
-  const std::string& FingerprintOf(int s, int p) const { return fingerprints_[s][p]; }
+  const std::string& FingerprintOf(int s, int p) const {
+    return fingerprints_[s][p];
+  }
   StageFiles Files(int s, int image) const;
   bool WritesGraph(int s) const;
 

@@ -103,8 +103,8 @@ std::vector<OptionSpec> MakeTable() {
       Stereo(kCommon, "geom_consistency", &P::geom_consistency, Anything(),
              "Add the geometric passes and write *.geometric.bin; 0: only *.photometric.bin"),
       Hpm(kCommon, "method", &H::method, OneOf(MethodNames()),
-          "Where a pixel looks for hypotheses: acmh near by, nsp far away, esp in growing regions, "
-          "nesp in growing regions far away"),
+          "hpm: planar priors at all scales; hpm_fast: at the coarsest only; nesp: without priors; "
+          "the others are rows of the paper's ablation (docs/ablation.md)"),
       Hpm(kCommon, "overwrite", &H::overwrite, Anything(),
           "Compute maps again that are complete and made with the same options"),
       Hpm(kCommon, "previews", &H::previews, Anything(),
@@ -172,8 +172,7 @@ std::vector<OptionSpec> MakeTable() {
       Hpm(kExpert, "geom_max_error", &H::geom_max_error, AtLeast(0),
           "Cap of the reprojection error in the geometric term, in pixels"),
       Hpm(kExpert, "num_levels", &H::num_levels, AtLeast(-1),
-          "Levels of the prior hierarchy; -1: by image size",
-          "no method of this version has planar priors"),
+          "Levels of the prior hierarchy; -1: by image size"),
       Stereo(kExpert, "gpu_index", &P::gpu_index, IndexList(), "GPUs to use",
              "this build computes on the CPU"),
       Stereo(kExpert, "window_step", &P::window_step, Between(1, 2), "Pixel stride in the window",

@@ -2,9 +2,9 @@
 // between tiles and rows.
 #pragma once
 
-#include <atomic>
-
 #include "src/base/error.h"
+
+#include <atomic>
 
 namespace hpm {
 

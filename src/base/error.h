@@ -9,10 +9,11 @@ namespace hpm {
 
 // The value is the exit code of the program.
 enum class ErrorCode {
-  kFailure = 1,         // anything unforeseen
-  kUsage = 2,           // command line or project file
-  kBadInput = 3,        // a file of the workspace is missing, damaged or contradictory
-  kPartial = 4,         // some images failed, the maps of the others are valid
+  kFailure = 1,  // anything unforeseen
+  kUsage = 2,    // command line or project file
+  kBadInput =
+      3,         // a file of the workspace is missing, damaged or contradictory
+  kPartial = 4,  // some images failed, the maps of the others are valid
   kOutOfResources = 5,  // memory or disk
   kDevice = 6,          // the asked-for device cannot be used
   kLocked = 7,          // another run works on this workspace
@@ -21,7 +22,8 @@ enum class ErrorCode {
 
 class Error : public std::runtime_error {
  public:
-  // The message names the file (or option) at fault and the remedy, in one line.
+  // The message names the file (or option) at fault and the remedy, in one
+  // line.
   Error(ErrorCode code, const std::string& message);
 
   ErrorCode code() const { return code_; }

@@ -8,7 +8,8 @@ namespace hpm {
 
 enum class LogLevel { kInfo = 0, kWarning = 1, kError = 2 };
 
-// Must be callable from several threads at once. One call = one line, without newline.
+// Must be callable from several threads at once. One call = one line, without
+// newline.
 using LogSink = std::function<void(LogLevel, const std::string&)>;
 
 }  // namespace hpm

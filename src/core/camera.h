@@ -28,6 +28,8 @@ HPM_HD Vec3f CamFromWorld(const Camera& camera, const Vec3f& point) {
 }
 
 // Camera centre in the world frame.
-HPM_HD Vec3f Center(const Camera& camera) { return -(Transposed(camera.R) * camera.t); }
+HPM_HD Vec3f Center(const Camera& camera) {
+  return -(Transposed(camera.R) * camera.t);
+}
 
 }  // namespace hpm

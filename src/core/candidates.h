@@ -1,12 +1,12 @@
 // Candidate hypotheses of a visit: in each region the pixel of smallest stored
-// cost; regions whose candidate convinces no view grow (NESP, paper section 3.1;
-// specification sections 5.2 and 5.3).
+// cost; regions whose candidate convinces no view grow (NESP, paper
+// section 3.1; specification sections 5.2 and 5.3).
 #pragma once
-
-#include <math.h>
 
 #include "src/core/pixel_state.h"
 #include "src/core/visit.h"
+
+#include <math.h>
 
 namespace hpm {
 
@@ -29,7 +29,8 @@ HPM_HD bool NearlySame(const VisitParams& params,
   const float drow = a.row - b.row;
   const float here = dcol * col + drow * row + a.constant - b.constant;
   const float radius = static_cast<float>(params.patch_radius);
-  return (fabsf(here) + radius * (fabsf(dcol) + fabsf(drow))) * params.parallax <
+  return (fabsf(here) + radius * (fabsf(dcol) + fabsf(drow))) *
+             params.parallax <
          params.same_plane_bound;
 }
 
@@ -61,10 +62,14 @@ HPM_HD int BestSample(const SamplingPattern& pattern,
 
 // The paper's test whether a region must grow: fewer than one view below the
 // threshold, or more than two views above the bad cost.
-HPM_HD bool MustExtend(const float* costs, int num_views, int iteration, int extension) {
+HPM_HD bool MustExtend(const float* costs,
+                       int num_views,
+                       int iteration,
+                       int extension) {
   constexpr int kNumGood = 1, kNumBad = 2;
   const float good_cost =
-      0.8f * expf(-static_cast<float>(iteration * iteration * (3 - extension)) / 90.0f);
+      0.8f * expf(-static_cast<float>(iteration * iteration * (3 - extension)) /
+                  90.0f);
   int num_good = 0, num_bad = 0;
   for (int j = 0; j < num_views; ++j) {
     num_good += costs[j] < good_cost;
@@ -84,7 +89,8 @@ HPM_HD void CollectCandidates(const VisitParams& params,
                               Candidates* candidates) {
   const float x = static_cast<float>(col);
   const float y = static_cast<float>(row);
-  const PlaneSlope current = SlopeOf(params.ref, state.planes[row * state.width + col]);
+  const PlaneSlope current =
+      SlopeOf(params.ref, state.planes[row * state.width + col]);
   PlaneSlope slope[kNumRegions];
   int same_as[kNumRegions];  // the region whose row of costs this one shares
   float best_cost[kNumRegions];
@@ -97,12 +103,14 @@ HPM_HD void CollectCandidates(const VisitParams& params,
   for (int i = 0; i < kNumRegions; ++i) {
     best_cost[i] = 1e30f;
     count[i] = pattern.num_base[i];
-    const int best = BestSample(pattern, state, i, 0, count[i], col, row, &best_cost[i]);
+    const int best =
+        BestSample(pattern, state, i, 0, count[i], col, row, &best_cost[i]);
     if (best < 0) continue;
     candidates->exists |= 1u << i;
     candidates->plane[i] = state.planes[best];
     slope[i] = SlopeOf(params.ref, state.planes[best]);
-    if (NearlySame(params, slope[i], current, x, y)) candidates->current |= 1u << i;
+    if (NearlySame(params, slope[i], current, x, y))
+      candidates->current |= 1u << i;
     same_as[i] = i;
     for (int j = 0; j < i && same_as[i] == i; ++j) {
       if ((candidates->exists >> j & 1) && same_as[j] == j &&
@@ -120,7 +128,8 @@ HPM_HD void CollectCandidates(const VisitParams& params,
   float costs[kNumRegions * kMaxViews];
   uint32_t growing = candidates->exists;
   for (int extension = 0;; ++extension) {
-    if (batch_size > 0) cost.Photometric(batch, batch_size, views, params.num_views, costs);
+    if (batch_size > 0)
+      cost.Photometric(batch, batch_size, views, params.num_views, costs);
     for (int b = 0; b < batch_size; ++b) {
       for (int j = 0; j < params.num_views; ++j) {
         candidates->matrix[batch_region[b] * params.num_views + j] =
@@ -140,12 +149,15 @@ HPM_HD void CollectCandidates(const VisitParams& params,
     batch_size = 0;
     for (int i = 0; i < kNumRegions; ++i) {
       if (!(growing >> i & 1)) continue;
-      if (!MustExtend(&candidates->matrix[i * params.num_views], params.num_views, iteration,
+      if (!MustExtend(&candidates->matrix[i * params.num_views],
+                      params.num_views,
+                      iteration,
                       extension)) {
         growing &= ~(1u << i);
         continue;
       }
-      const int best = BestSample(pattern, state, i, count[i], 2 * count[i], col, row, &best_cost[i]);
+      const int best = BestSample(
+          pattern, state, i, count[i], 2 * count[i], col, row, &best_cost[i]);
       count[i] *= 2;
       if (best < 0) continue;
       candidates->plane[i] = state.planes[best];

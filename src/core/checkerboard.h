@@ -1,6 +1,6 @@
-// Checkerboard propagation: two half-sweeps per iteration, first the pixels with
-// even col + row, then the odd ones. A visit reads only pixels of the other
-// colour, so the pixels of one colour are independent of each other.
+// Checkerboard propagation: two half-sweeps per iteration, first the pixels
+// with even col + row, then the odd ones. A visit reads only pixels of the
+// other colour, so the pixels of one colour are independent of each other.
 #pragma once
 
 #include "src/core/limits.h"
@@ -14,8 +14,10 @@ struct SamplingPattern {
   short dcol[kNumRegions][kMaxRegionSamples];
   short drow[kNumRegions][kMaxRegionSamples];
   int num_base[kNumRegions];  // samples before any extension
-  int max_extensions;         // 0: regions never grow; each extension doubles the region
-  int mask_distance;          // axial distance of the neighbours whose view masks vote (section 4)
+  int max_extensions;  // 0: regions never grow; each extension doubles the
+                       // region
+  int mask_distance;   // axial distance of the neighbours whose view masks vote
+                       // (section 4)
 };
 
 }  // namespace hpm

@@ -24,7 +24,8 @@ HPM_HD uint32_t ConsistentViews(const VisitParams& params,
                                 const Plane& plane,
                                 int col,
                                 int row) {
-  const Vec3f ray = RayAt(params.ref, static_cast<float>(col), static_cast<float>(row));
+  const Vec3f ray =
+      RayAt(params.ref, static_cast<float>(col), static_cast<float>(row));
   const Vec3f point = (-plane.distance / Dot(plane.normal, ray)) * ray;
   const Vec3f to_ref = -Normalized(point);
   const float max_cos = cosf(filter.min_triangulation_angle);
@@ -35,7 +36,9 @@ HPM_HD uint32_t ConsistentViews(const VisitParams& params,
     const float distance = Norm(to_src);
     if (!(distance > 0) || Dot(to_src, plane.normal) <= 0) continue;
     if (Dot(to_src, to_ref) > max_cos * distance) continue;
-    if (params.geometric && cost.GeometricError(plane, j) > filter.max_reprojection_error) continue;
+    if (params.geometric &&
+        cost.GeometricError(plane, j) > filter.max_reprojection_error)
+      continue;
     views[num_views++] = static_cast<uint8_t>(j);
   }
   uint32_t mask = 0;

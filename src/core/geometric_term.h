@@ -2,9 +2,9 @@
 // against the depth map of a source view (specification section 9; after ACMM).
 #pragma once
 
-#include <math.h>
-
 #include "src/core/warp.h"
+
+#include <math.h>
 
 namespace hpm {
 
@@ -16,8 +16,9 @@ struct GeometricTerm {
 // The pixel of the reference image, after going to the source view along the
 // hypothesis and back along the depth that the source view found.
 // `inverse_depth(u, v)` returns 1/z of the source view at a continuous position
-// (pixel centres at integers), 0 where there is none. Working with 1/z makes the
-// way back M' (u, v, 1) + v' / z, and bilinear interpolation exact on planes.
+// (pixel centres at integers), 0 where there is none. Working with 1/z makes
+// the way back M' (u, v, 1) + v' / z, and bilinear interpolation exact on
+// planes.
 template <class InverseDepth>
 HPM_HD float ReprojectionError(const ViewWarp& to_src,
                                const ViewWarp& to_ref,
@@ -26,12 +27,14 @@ HPM_HD float ReprojectionError(const ViewWarp& to_src,
                                float row,
                                float max_error,
                                const InverseDepth& inverse_depth) {
-  const Vec3f q = to_src.M * Vec3f{col, row, 1.0f} -
-                  (slope.col * col + slope.row * row + slope.constant) * to_src.v;
+  const Vec3f q =
+      to_src.M * Vec3f{col, row, 1.0f} -
+      (slope.col * col + slope.row * row + slope.constant) * to_src.v;
   if (!(q.z > 0)) return max_error;
   const float u = q.x / q.z;
   const float v = q.y / q.z;
-  if (!(u >= -0.5f && v >= -0.5f && u <= static_cast<float>(to_src.width) - 0.5f &&
+  if (!(u >= -0.5f && v >= -0.5f &&
+        u <= static_cast<float>(to_src.width) - 0.5f &&
         v <= static_cast<float>(to_src.height) - 0.5f)) {
     return max_error;
   }
@@ -48,7 +51,8 @@ HPM_HD float ReprojectionError(const ViewWarp& to_src,
 // Bilinear 1/z where the four taps belong to one surface, else the nearest tap.
 // `at(col, row)` returns 1/z at a pixel, 0 = none.
 template <class At>
-HPM_HD float InterpolateInverseDepth(const At& at, int width, int height, float u, float v) {
+HPM_HD float InterpolateInverseDepth(
+    const At& at, int width, int height, float u, float v) {
   constexpr float kSameSurface = 0.02f;  // relative difference
   const float cu = Clamp(u, 0.0f, static_cast<float>(width - 1));
   const float cv = Clamp(v, 0.0f, static_cast<float>(height - 1));
@@ -58,7 +62,8 @@ HPM_HD float InterpolateInverseDepth(const At& at, int width, int height, float 
   const int row1 = row + 1 < height ? row + 1 : row;
   const float fu = cu - static_cast<float>(col);
   const float fv = cv - static_cast<float>(row);
-  const float a = at(col, row), b = at(col1, row), c = at(col, row1), d = at(col1, row1);
+  const float a = at(col, row), b = at(col1, row), c = at(col, row1),
+              d = at(col1, row1);
   const float lo = fminf(fminf(a, b), fminf(c, d));
   const float hi = fmaxf(fmaxf(a, b), fmaxf(c, d));
   if (lo > 0 && hi - lo <= kSameSurface * hi) {

@@ -15,7 +15,7 @@ enum class StartFrom {
 };
 
 constexpr float kConvincingCost = 0.1f;
-constexpr float kPriorDepthSpread = 0.06f;    // relative
+constexpr float kPriorDepthSpread = 0.06f;        // relative
 constexpr float kPriorNormalSpread = 0.0942478f;  // radians per axis, 0.03 pi
 
 // Mean of the best kNumInitialViews costs below kMaxCost and the mask of views
@@ -52,20 +52,23 @@ HPM_HD void InitializePixel(const VisitParams& params,
                             int col,
                             int row) {
   const int at = row * state.width + col;
-  const Vec3f ray = RayAt(params.ref, static_cast<float>(col), static_cast<float>(row));
+  const Vec3f ray =
+      RayAt(params.ref, static_cast<float>(col), static_cast<float>(row));
   Plane plane = state.planes[at];
   const bool has_plane = plane.distance > 0;
-  if (start == StartFrom::kPrior && state.priors != nullptr && state.priors[at].distance > 0 &&
+  if (start == StartFrom::kPrior && state.priors != nullptr &&
+      state.priors[at].distance > 0 &&
       !(has_plane && state.costs[at] < kConvincingCost)) {
     const Plane& prior = state.priors[at];
     plane.normal = PerturbNormal(prior.normal, ray, kPriorNormalSpread, rng);
-    const float depth = -prior.distance / Dot(prior.normal, ray) *
-                        rng->Uniform(1 - kPriorDepthSpread, 1 + kPriorDepthSpread);
+    const float depth =
+        -prior.distance / Dot(prior.normal, ray) *
+        rng->Uniform(1 - kPriorDepthSpread, 1 + kPriorDepthSpread);
     plane.distance = -depth * Dot(plane.normal, ray);
   } else if (start == StartFrom::kRandom || !has_plane) {
     plane.normal = RandomNormal(ray, rng);
-    plane.distance =
-        -rng->Uniform(params.depth_min, params.depth_max) * Dot(plane.normal, ray);
+    plane.distance = -rng->Uniform(params.depth_min, params.depth_max) *
+                     Dot(plane.normal, ray);
   }
   uint8_t views[kMaxViews];
   for (int j = 0; j < params.num_views; ++j) views[j] = static_cast<uint8_t>(j);

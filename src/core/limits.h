@@ -3,13 +3,17 @@
 
 namespace hpm {
 
-constexpr int kMaxViews = 32;       // source views of one reference (bits of a view mask)
-constexpr int kNumRegions = 8;      // propagation regions, one candidate each
+constexpr int kMaxViews =
+    32;  // source views of one reference (bits of a view mask)
+constexpr int kNumRegions = 8;  // propagation regions, one candidate each
 constexpr int kMaxRegionSamples = 88;  // 11 samples doubled three times
-constexpr int kPatchAxis = 6;       // window samples per axis: radius * {-1, -3/5, -1/5, 1/5, 3/5, 1}
+constexpr int kPatchAxis =
+    6;  // window samples per axis: radius * {-1, -3/5, -1/5, 1/5, 3/5, 1}
 constexpr int kPatchSize = kPatchAxis * kPatchAxis;
 
-constexpr float kMaxCost = 2.0f;     // 1 - NCC lies in [0, 2]; also the cost of "cannot be seen"
-constexpr float kMinVariance = 1e-5f;  // grey levels squared; below it a window counts as constant
+constexpr float kMaxCost =
+    2.0f;  // 1 - NCC lies in [0, 2]; also the cost of "cannot be seen"
+constexpr float kMinVariance =
+    1e-5f;  // grey levels squared; below it a window counts as constant
 
 }  // namespace hpm

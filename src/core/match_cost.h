@@ -4,25 +4,29 @@
 // their own and are tested against it.
 #pragma once
 
-#include <math.h>
-
 #include "src/core/limits.h"
 #include "src/core/warp.h"
+
+#include <math.h>
 
 namespace hpm {
 
 // Window geometry and weights, the same for all pixels.
 struct PatchShape {
-  int offset[kPatchAxis];      // pixels, per axis
-  float spatial[kPatchSize];   // exp(-|q - p| / (2 sigma_spatial^2)), row-major
-  float color_falloff;         // 1 / (2 sigma_color^2), per grey level
+  int offset[kPatchAxis];     // pixels, per axis
+  float spatial[kPatchSize];  // exp(-|q - p| / (2 sigma_spatial^2)), row-major
+  float color_falloff;        // 1 / (2 sigma_color^2), per grey level
 };
 
-HPM_HD PatchShape MakePatchShape(int radius, float sigma_spatial, float sigma_color) {
+HPM_HD PatchShape MakePatchShape(int radius,
+                                 float sigma_spatial,
+                                 float sigma_color) {
   PatchShape shape;
   for (int i = 0; i < kPatchAxis; ++i) {
     shape.offset[i] = static_cast<int>(
-        floorf(static_cast<float>(radius * (2 * i - kPatchAxis + 1)) / (kPatchAxis - 1) + 0.5f));
+        floorf(static_cast<float>(radius * (2 * i - kPatchAxis + 1)) /
+                   (kPatchAxis - 1) +
+               0.5f));
   }
   for (int j = 0; j < kPatchAxis; ++j) {
     for (int i = 0; i < kPatchAxis; ++i) {
@@ -61,7 +65,8 @@ HPM_HD RefPatch MakeRefPatch(const PatchShape& shape,
   for (int j = 0; j < kPatchAxis; ++j) {
     for (int i = 0; i < kPatchAxis; ++i) {
       const int k = j * kPatchAxis + i;
-      const float r = grey(col + shape.offset[i], row + shape.offset[j]) - patch.center;
+      const float r =
+          grey(col + shape.offset[i], row + shape.offset[j]) - patch.center;
       const float w = shape.spatial[k] * color_weight(fabsf(r));
       patch.weight[k] = w;
       patch.weighted[k] = w * r;
@@ -82,9 +87,13 @@ HPM_HD RefPatch MakeRefPatch(const PatchShape& shape,
 
 // Whether the whole patch lies in front of the source camera and its centre
 // inside the source image.
-HPM_HD bool IsVisible(const PatchWarp& warp, const PatchShape& shape, int width, int height) {
+HPM_HD bool IsVisible(const PatchWarp& warp,
+                      const PatchShape& shape,
+                      int width,
+                      int height) {
   const float radius = static_cast<float>(shape.offset[kPatchAxis - 1]);
-  const float nearest = warp.origin.z - radius * (fabsf(warp.dcol.z) + fabsf(warp.drow.z));
+  const float nearest =
+      warp.origin.z - radius * (fabsf(warp.dcol.z) + fabsf(warp.drow.z));
   if (!(nearest > 0)) return false;
   const float u = warp.origin.x / warp.origin.z;
   const float v = warp.origin.y / warp.origin.z;
@@ -101,12 +110,14 @@ HPM_HD float MatchCost(const PatchShape& shape,
                        const Sample& sample,
                        int width,
                        int height) {
-  if (ref.variance < kMinVariance || !IsVisible(warp, shape, width, height)) return kMaxCost;
+  if (ref.variance < kMinVariance || !IsVisible(warp, shape, width, height))
+    return kMaxCost;
   float sum_s = 0, sum_ss = 0, sum_rs = 0;
   for (int j = 0; j < kPatchAxis; ++j) {
     for (int i = 0; i < kPatchAxis; ++i) {
       const int k = j * kPatchAxis + i;
-      const Vec3f q = warp.origin + static_cast<float>(shape.offset[i]) * warp.dcol +
+      const Vec3f q = warp.origin +
+                      static_cast<float>(shape.offset[i]) * warp.dcol +
                       static_cast<float>(shape.offset[j]) * warp.drow;
       const float s = sample(q.x / q.z, q.y / q.z) - ref.center;
       sum_s += ref.weight[k] * s;
@@ -117,7 +128,8 @@ HPM_HD float MatchCost(const PatchShape& shape,
   const float variance = sum_ss - sum_s * sum_s;
   if (variance < kMinVariance) return kMaxCost;
   const float covariance = sum_rs - ref.mean * sum_s;
-  return Clamp(1.0f - covariance / sqrtf(ref.variance * variance), 0.0f, kMaxCost);
+  return Clamp(
+      1.0f - covariance / sqrtf(ref.variance * variance), 0.0f, kMaxCost);
 }
 
 }  // namespace hpm

@@ -22,7 +22,10 @@ HPM_HD Plane PlaneFromDepth(const Camera& camera,
 
 // Depth z of the plane on the ray of (col, row); infinite or negative where the
 // ray runs along the plane or meets it behind the camera.
-HPM_HD float DepthAt(const Camera& camera, const Plane& plane, float col, float row) {
+HPM_HD float DepthAt(const Camera& camera,
+                     const Plane& plane,
+                     float col,
+                     float row) {
   return -plane.distance / Dot(plane.normal, RayAt(camera, col, row));
 }
 

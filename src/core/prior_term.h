@@ -2,9 +2,9 @@
 // posterior = exp(-cost^2 / beta) * (gamma + depth likeness * normal likeness).
 #pragma once
 
-#include <math.h>
-
 #include "src/core/plane.h"
+
+#include <math.h>
 
 namespace hpm {
 
@@ -21,9 +21,12 @@ HPM_HD float AngleBetween(const Vec3f& a, const Vec3f& b) {
 
 // Logarithm of the posterior (to be maximised); the logarithm keeps high costs
 // apart where the product would underflow.
-HPM_HD float LogPosterior(
-    const PriorTerm& term, float cost, float depth, const Vec3f& normal, float prior_depth,
-    const Vec3f& prior_normal) {
+HPM_HD float LogPosterior(const PriorTerm& term,
+                          float cost,
+                          float depth,
+                          const Vec3f& normal,
+                          float prior_depth,
+                          const Vec3f& prior_normal) {
   const float dz = (depth - prior_depth) / term.sigma_depth;
   const float da = AngleBetween(normal, prior_normal) / term.sigma_angle;
   const float likeness = expf(-0.5f * (dz * dz + da * da));

@@ -2,10 +2,10 @@
 // the seven combinations of current, perturbed and random depth and normal).
 #pragma once
 
-#include <math.h>
-
 #include "src/core/plane.h"
 #include "src/core/rng.h"
+
+#include <math.h>
 
 namespace hpm {
 
@@ -22,11 +22,15 @@ HPM_HD Vec3f RandomNormal(const Vec3f& ray, Rng* rng) {
 
 // Rotates n by three independent angles in +-max_angle (radians) about x, y and
 // z; keeps n if the result would face away.
-HPM_HD Vec3f PerturbNormal(const Vec3f& n, const Vec3f& ray, float max_angle, Rng* rng) {
+HPM_HD Vec3f PerturbNormal(const Vec3f& n,
+                           const Vec3f& ray,
+                           float max_angle,
+                           Rng* rng) {
   const float a = rng->Uniform(-max_angle, max_angle);
   const float b = rng->Uniform(-max_angle, max_angle);
   const float c = rng->Uniform(-max_angle, max_angle);
-  const float sa = sinf(a), ca = cosf(a), sb = sinf(b), cb = cosf(b), sc = sinf(c), cc = cosf(c);
+  const float sa = sinf(a), ca = cosf(a), sb = sinf(b), cb = cosf(b),
+              sc = sinf(c), cc = cosf(c);
   const Vec3f x = {n.x, ca * n.y - sa * n.z, sa * n.y + ca * n.z};
   const Vec3f y = {cb * x.x + sb * x.z, x.y, -sb * x.x + cb * x.z};
   const Vec3f z = Normalized({cc * y.x - sc * y.y, sc * y.x + cc * y.y, y.z});

@@ -2,9 +2,9 @@
 // same seed gives the same numbers on any backend, thread count or resume.
 #pragma once
 
-#include <stdint.h>
-
 #include "src/core/host_device.h"
+
+#include <stdint.h>
 
 namespace hpm {
 
@@ -16,15 +16,18 @@ HPM_HD uint64_t MixBits(uint64_t z) {
 }
 
 HPM_HD uint64_t CombineBits(uint64_t key, uint64_t value) {
-  return MixBits(key ^ (value + 0x9E3779B97F4A7C15ull + (key << 6) + (key >> 2)));
+  return MixBits(key ^
+                 (value + 0x9E3779B97F4A7C15ull + (key << 6) + (key >> 2)));
 }
 
 class Rng {
  public:
-  // `key` identifies (seed, image, pass, iteration); one stream per pixel of it.
+  // `key` identifies (seed, image, pass, iteration); one stream per pixel of
+  // it.
   HPM_HD_MEMBER Rng(uint64_t key, int col, int row)
-      : state_(CombineBits(key, (static_cast<uint64_t>(row) << 32) | static_cast<uint32_t>(col))) {
-  }
+      : state_(CombineBits(
+            key,
+            (static_cast<uint64_t>(row) << 32) | static_cast<uint32_t>(col))) {}
 
   // Uniform in [0, 1).
   HPM_HD_MEMBER float Uniform() {
@@ -33,7 +36,9 @@ class Rng {
   }
 
   // Uniform in [lo, hi).
-  HPM_HD_MEMBER float Uniform(float lo, float hi) { return lo + (hi - lo) * Uniform(); }
+  HPM_HD_MEMBER float Uniform(float lo, float hi) {
+    return lo + (hi - lo) * Uniform();
+  }
 
  private:
   uint64_t state_;

@@ -29,7 +29,9 @@ Offset VSample(int k) {
 }
 
 // Left-up polyline from (-5,-6), alternately two left and two up.
-Offset PolylineSample(int k) { return {-5 - 2 * ((k + 1) / 2), -6 - 2 * (k / 2)}; }
+Offset PolylineSample(int k) {
+  return {-5 - 2 * ((k + 1) / 2), -6 - 2 * (k / 2)};
+}
 
 }  // namespace
 
@@ -39,8 +41,8 @@ SamplingPattern MakeSamplingPattern(bool non_local, bool extensible) {
   pattern.mask_distance = non_local ? 5 : 1;
   for (int region = 0; region < kNumRegions; ++region) {
     const bool strip = region < 4;
-    const int num_base =
-        non_local ? (strip ? kNespStrip : kNespPolyline) : (strip ? kAcmhStrip : kAcmhV);
+    const int num_base = non_local ? (strip ? kNespStrip : kNespPolyline)
+                                   : (strip ? kAcmhStrip : kAcmhV);
     pattern.num_base[region] = num_base;
     for (int k = 0; k < num_base << kMaxExtensions; ++k) {
       Offset offset;

@@ -5,7 +5,8 @@
 
 namespace hpm {
 
-// non_local = false: ACMH's strips and Vs around the pixel (Xu and Tao 2019, with
+// non_local = false: ACMH's strips and Vs around the pixel (Xu and Tao 2019,
+// with
 //   the V moved by one pixel so that every offset reaches the other colour).
 // non_local = true: NESP, nothing within radius 4 (HPM-MVS section 3.1): four
 //   strips of 5 samples and four polylines of 8, a pinwheel of odd offsets.

@@ -7,8 +7,8 @@
 
 namespace hpm {
 
-// View probabilities from the candidates' votes and the masks of four neighbours
-// of the other colour.
+// View probabilities from the candidates' votes and the masks of four
+// neighbours of the other colour.
 HPM_HD void ViewProbabilities(const VisitParams& params,
                               const SamplingPattern& pattern,
                               const PixelState& state,
@@ -33,8 +33,11 @@ HPM_HD void ViewProbabilities(const VisitParams& params,
     }
   }
   for (int j = 0; j < params.num_views; ++j) {
-    probability[j] = neighbour_votes[j] * ViewLikelihood(candidates.matrix, params.num_views, j,
-                                                         candidates.exists, good_cost);
+    probability[j] = neighbour_votes[j] * ViewLikelihood(candidates.matrix,
+                                                         params.num_views,
+                                                         j,
+                                                         candidates.exists,
+                                                         good_cost);
   }
 }
 
@@ -49,7 +52,8 @@ HPM_HD float WeightedRow(const VisitParams& params,
   for (int k = 0; k < weights.num_views; ++k) {
     float c = row_of_costs[weights.view[k]];
     if (params.geometric) {
-      c += params.geometric_term.weight * cost.GeometricError(plane, weights.view[k]);
+      c += params.geometric_term.weight *
+           cost.GeometricError(plane, weights.view[k]);
     }
     sum += weights.weight[k] * c;
   }
@@ -63,9 +67,12 @@ struct Ranking {
   float prior_depth;
   Vec3f prior_normal;
 
-  HPM_HD_MEMBER float operator()(float cost, float depth, const Vec3f& normal) const {
+  HPM_HD_MEMBER float operator()(float cost,
+                                 float depth,
+                                 const Vec3f& normal) const {
     if (!has_prior) return -cost;
-    return LogPosterior(params->prior_term, cost, depth, normal, prior_depth, prior_normal);
+    return LogPosterior(
+        params->prior_term, cost, depth, normal, prior_depth, prior_normal);
   }
 };
 
@@ -84,12 +91,14 @@ HPM_HD void UpdatePixel(const VisitParams& params,
   const Vec3f ray = RayAt(params.ref, x, y);
 
   Candidates candidates;
-  CollectCandidates(params, pattern, state, cost, iteration, col, row, &candidates);
+  CollectCandidates(
+      params, pattern, state, cost, iteration, col, row, &candidates);
 
   float probability[kMaxViews];
-  ViewProbabilities(params, pattern, state, candidates, iteration, col, row, probability);
-  const ViewWeights weights =
-      DrawViews(probability, params.num_views, params.num_view_draws, rng->Uniform());
+  ViewProbabilities(
+      params, pattern, state, candidates, iteration, col, row, probability);
+  const ViewWeights weights = DrawViews(
+      probability, params.num_views, params.num_view_draws, rng->Uniform());
 
   Ranking rank = {&params, false, 0, {0, 0, 0}};
   if (state.priors != nullptr && state.priors[at].distance > 0) {
@@ -103,7 +112,10 @@ HPM_HD void UpdatePixel(const VisitParams& params,
   if (candidates.current != 0) {
     int same = 0;
     while (!(candidates.current >> same & 1)) ++same;
-    best_cost = WeightedRow(params, cost, weights, best,
+    best_cost = WeightedRow(params,
+                            cost,
+                            weights,
+                            best,
                             &candidates.matrix[same * params.num_views]);
   } else {
     WeightedCosts(params, cost, weights, &best, 1, &best_cost);
@@ -118,8 +130,8 @@ HPM_HD void UpdatePixel(const VisitParams& params,
     const Plane& plane = candidates.plane[i];
     const float z = -plane.distance / Dot(plane.normal, ray);
     if (!(z >= params.depth_min && z <= params.depth_max)) continue;
-    const float candidate_cost = WeightedRow(params, cost, weights, plane,
-                                             &candidates.matrix[i * params.num_views]);
+    const float candidate_cost = WeightedRow(
+        params, cost, weights, plane, &candidates.matrix[i * params.num_views]);
     const float candidate_rank = rank(candidate_cost, z, plane.normal);
     if (candidate_rank > best_rank) {
       best = plane;
@@ -134,19 +146,30 @@ HPM_HD void UpdatePixel(const VisitParams& params,
   float z_random;
   Vec3f n_random;
   if (rank.has_prior) {
-    z_random = rank.prior_depth + rng->Uniform(-3.0f, 3.0f) * params.prior_term.sigma_depth;
-    n_random = PerturbNormal(rank.prior_normal, ray, 0.5f * params.prior_term.sigma_angle, rng);
+    z_random = rank.prior_depth +
+               rng->Uniform(-3.0f, 3.0f) * params.prior_term.sigma_depth;
+    n_random = PerturbNormal(
+        rank.prior_normal, ray, 0.5f * params.prior_term.sigma_angle, rng);
   } else {
     z_random = rng->Uniform(params.depth_min, params.depth_max);
     n_random = RandomNormal(ray, rng);
   }
-  const float z_perturbed =
-      depth * rng->Uniform(1 - params.depth_perturbation, 1 + params.depth_perturbation);
-  const Vec3f n_perturbed = PerturbNormal(best.normal, ray, params.normal_perturbation, rng);
+  const float z_perturbed = depth * rng->Uniform(1 - params.depth_perturbation,
+                                                 1 + params.depth_perturbation);
+  const Vec3f n_perturbed =
+      PerturbNormal(best.normal, ray, params.normal_perturbation, rng);
   Plane refined[kNumRefined];
   float refined_cost[kNumRefined];
-  CombineHypotheses(params.ref, x, y, depth, best.normal, z_random, n_random, z_perturbed,
-                    n_perturbed, refined);
+  CombineHypotheses(params.ref,
+                    x,
+                    y,
+                    depth,
+                    best.normal,
+                    z_random,
+                    n_random,
+                    z_perturbed,
+                    n_perturbed,
+                    refined);
   WeightedCosts(params, cost, weights, refined, kNumRefined, refined_cost);
   for (int i = 0; i < kNumRefined; ++i) {
     const float z = -refined[i].distance / Dot(refined[i].normal, ray);

@@ -2,10 +2,11 @@
 // section 4): the costs of all candidates vote for the views worth trusting.
 #pragma once
 
+#include "src/core/host_device.h"
+#include "src/core/limits.h"
+
 #include <math.h>
 #include <stdint.h>
-
-#include "src/core/limits.h"
 
 namespace hpm {
 
@@ -27,8 +28,11 @@ constexpr float kBadCost = 1.2f;
 
 // Likelihood of a view from the costs of the candidates that exist.
 // costs[i * num_views + view]; exists: bit i = candidate i.
-HPM_HD float ViewLikelihood(
-    const float* costs, int num_views, int view, uint32_t exists, float good_cost) {
+HPM_HD float ViewLikelihood(const float* costs,
+                            int num_views,
+                            int view,
+                            uint32_t exists,
+                            float good_cost) {
   int num_good = 0, num_bad = 0;
   float sum = 0;
   for (int i = 0; i < kNumRegions; ++i) {
@@ -50,7 +54,10 @@ HPM_HD float ViewLikelihood(
 // systematic sampling: one random offset in [0, 1) for all draws, which has the
 // expectation of independent draws and less noise. If no view has a
 // probability, all views count alike.
-HPM_HD ViewWeights DrawViews(const float* probability, int num_views, int num_draws, float offset) {
+HPM_HD ViewWeights DrawViews(const float* probability,
+                             int num_views,
+                             int num_draws,
+                             float offset) {
   float total = 0;
   for (int j = 0; j < num_views; ++j) total += probability[j];
   ViewWeights weights;

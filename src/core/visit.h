@@ -9,34 +9,37 @@
 //     reprojection error in pixels, capped (geometric passes only).
 #pragma once
 
-#include <stdint.h>
-
 #include "src/core/checkerboard.h"
 #include "src/core/geometric_term.h"
 #include "src/core/prior_term.h"
 #include "src/core/view_selection.h"
+
+#include <stdint.h>
 
 namespace hpm {
 
 struct VisitParams {
   Camera ref;
   int num_views;
-  float depth_min, depth_max;  // model units; hypotheses outside are not accepted
-  int num_view_draws;          // 15
-  float depth_perturbation;    // relative, 0.02
-  float normal_perturbation;   // radians per axis, 0.01 pi
-  float same_plane_bound;      // pixels; see NearlySame() in candidates.h
-  float parallax;              // pixels in a source view per unit of -1/z, largest of all views
-  int patch_radius;            // pixels
-  bool geometric;              // add the geometric term
+  float depth_min,
+      depth_max;             // model units; hypotheses outside are not accepted
+  int num_view_draws;        // 15
+  float depth_perturbation;  // relative, 0.02
+  float normal_perturbation;  // radians per axis, 0.01 pi
+  float same_plane_bound;     // pixels; see NearlySame() in candidates.h
+  float parallax;    // pixels in a source view per unit of -1/z, largest of all
+                     // views
+  int patch_radius;  // pixels
+  bool geometric;    // add the geometric term
   GeometricTerm geometric_term;
   PriorTerm prior_term;
 };
 
-constexpr int kNumInitialViews = 4;  // k of the best-k mean at initialisation (paper section 3)
+constexpr int kNumInitialViews =
+    4;  // k of the best-k mean at initialisation (paper section 3)
 
-// Costs of several planes over the drawn views, weighted; the batch goes through
-// the backend at once.
+// Costs of several planes over the drawn views, weighted; the batch goes
+// through the backend at once.
 template <class Cost>
 HPM_HD void WeightedCosts(const VisitParams& params,
                           const Cost& cost,
@@ -51,7 +54,8 @@ HPM_HD void WeightedCosts(const VisitParams& params,
     for (int k = 0; k < weights.num_views; ++k) {
       float c = costs[i * weights.num_views + k];
       if (params.geometric) {
-        c += params.geometric_term.weight * cost.GeometricError(planes[i], weights.view[k]);
+        c += params.geometric_term.weight *
+             cost.GeometricError(planes[i], weights.view[k]);
       }
       sum += weights.weight[k] * c;
     }

@@ -29,8 +29,15 @@ HPM_HD ViewWarp MakeViewWarp(const Camera& ref, const Camera& src) {
   const Mat3f R = src.R * Transposed(ref.R);
   const Vec3f t = src.t - R * ref.t;
   const Mat3f K = {{src.fx, 0, src.cx, 0, src.fy, src.cy, 0, 0, 1}};
-  const Mat3f K_inv = {
-      {1 / ref.fx, 0, -ref.cx / ref.fx, 0, 1 / ref.fy, -ref.cy / ref.fy, 0, 0, 1}};
+  const Mat3f K_inv = {{1 / ref.fx,
+                        0,
+                        -ref.cx / ref.fx,
+                        0,
+                        1 / ref.fy,
+                        -ref.cy / ref.fy,
+                        0,
+                        0,
+                        1}};
   return {K * (R * K_inv), K * t, src.width, src.height};
 }
 
@@ -38,10 +45,15 @@ HPM_HD PlaneSlope SlopeOf(const Camera& ref, const Plane& plane) {
   const float col = plane.normal.x / ref.fx;
   const float row = plane.normal.y / ref.fy;
   const float inv_d = 1.0f / plane.distance;
-  return {col * inv_d, row * inv_d, (plane.normal.z - col * ref.cx - row * ref.cy) * inv_d};
+  return {col * inv_d,
+          row * inv_d,
+          (plane.normal.z - col * ref.cx - row * ref.cy) * inv_d};
 }
 
-HPM_HD PatchWarp WarpPatch(const ViewWarp& view, const PlaneSlope& m, float col, float row) {
+HPM_HD PatchWarp WarpPatch(const ViewWarp& view,
+                           const PlaneSlope& m,
+                           float col,
+                           float row) {
   const float neg_inv_z = m.col * col + m.row * row + m.constant;
   const float* M = view.M.m;
   return {view.M * Vec3f{col, row, 1.0f} - neg_inv_z * view.v,

@@ -1,5 +1,10 @@
 #include "src/cpu/cpu_backend.h"
 
+#include "src/core/initialize_pixel.h"
+#include "src/core/median_filter.h"
+#include "src/core/update_pixel.h"
+#include "src/cpu/cpu_views.h"
+
 #include <atomic>
 #include <optional>
 
@@ -7,11 +12,6 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
-
-#include "src/core/initialize_pixel.h"
-#include "src/core/median_filter.h"
-#include "src/core/update_pixel.h"
-#include "src/cpu/cpu_views.h"
 
 namespace hpm {
 namespace {
@@ -22,13 +22,18 @@ class CpuBackend : public Backend {
  public:
   CpuBackend(CpuTarget target, int num_threads)
       : target_(std::move(target)),
-        arena_(num_threads > 0 ? num_threads : tbb::this_task_arena::max_concurrency()) {}
+        arena_(num_threads > 0 ? num_threads
+                               : tbb::this_task_arena::max_concurrency()) {}
 
   std::string Name() const override {
-    return fmt::format("cpu {}, {} threads", target_.name, arena_.max_concurrency());
+    return fmt::format(
+        "cpu {}, {} threads", target_.name, arena_.max_concurrency());
   }
 
-  uint64_t MemoryNeeded(int width, int height, int num_srcs, bool geometric) const override {
+  uint64_t MemoryNeeded(int width,
+                        int height,
+                        int num_srcs,
+                        bool geometric) const override {
     const uint64_t pixels = static_cast<uint64_t>(width) * height;
     const uint64_t state = sizeof(Plane) * 2 + sizeof(float) + sizeof(uint32_t);
     return CpuViews::MemoryNeeded(width, height, num_srcs) + pixels * state +
@@ -52,9 +57,11 @@ class CpuBackend : public Backend {
     visit_.parallax = views_->parallax();
     visit_.patch_radius = params.patch_radius;
     visit_.geometric_term = {params.geom_weight, params.geom_max_error};
-    visit_.prior_term = {params.prior_gamma, params.prior_beta,
-                         params.prior_depth_share * (views.depth_max - views.depth_min),
-                         params.prior_angle};
+    visit_.prior_term = {
+        params.prior_gamma,
+        params.prior_beta,
+        params.prior_depth_share * (views.depth_max - views.depth_min),
+        params.prior_angle};
   }
 
   void Run(const Pass& pass,
@@ -68,7 +75,8 @@ class CpuBackend : public Backend {
     const int num_steps = 2 + 2 * pass.num_iterations;  // two half-sweeps each
     int step = 0;
     const auto finish_step = [&] {
-      if (control.progress) control.progress(static_cast<double>(++step) / num_steps);
+      if (control.progress)
+        control.progress(static_cast<double>(++step) / num_steps);
     };
 
     const uint64_t start_key = CombineBits(pass_key, 0);
@@ -108,13 +116,19 @@ class CpuBackend : public Backend {
     VisitParams params = visit_;
     params.geometric = geometric;
     std::vector<uint32_t> consistent(map.planes.size());
-    const PixelState size = {map.width, map.height, nullptr, nullptr, nullptr, nullptr};
+    const PixelState size = {
+        map.width, map.height, nullptr, nullptr, nullptr, nullptr};
     for (int color = 0; color < 2; ++color) {
       HalfSweep(size, color, control, [&](int col, int row) {
         const size_t at = static_cast<size_t>(row) * map.width + col;
         const CpuPixelCost cost = CostAt(col, row);
-        consistent[at] = hpm::ConsistentViews(params, filter, views_->src_centers().data(), cost,
-                                              map.planes[at], col, row);
+        consistent[at] = hpm::ConsistentViews(params,
+                                              filter,
+                                              views_->src_centers().data(),
+                                              cost,
+                                              map.planes[at],
+                                              col,
+                                              row);
         return cost.num_evaluations();
       });
     }
@@ -125,13 +139,17 @@ class CpuBackend : public Backend {
 
  private:
   CpuPixelCost CostAt(int col, int row) const {
-    return {*views_, target_.match_cost, visit_.geometric_term.max_error, col, row};
+    return {
+        *views_, target_.match_cost, visit_.geometric_term.max_error, col, row};
   }
 
-  // Calls visit(col, row) for all pixels of one colour; it returns the number of
-  // cost evaluations. Bands of rows run in parallel.
+  // Calls visit(col, row) for all pixels of one colour; it returns the number
+  // of cost evaluations. Bands of rows run in parallel.
   template <class Visit>
-  void HalfSweep(const PixelState& state, int color, const RunControl& control, const Visit& visit) {
+  void HalfSweep(const PixelState& state,
+                 int color,
+                 const RunControl& control,
+                 const Visit& visit) {
     arena_.execute([&] {
       tbb::parallel_for(
           tbb::blocked_range<int>(0, state.height, kRowsPerTask),
@@ -160,7 +178,8 @@ class CpuBackend : public Backend {
 
 }  // namespace
 
-std::unique_ptr<Backend> MakeCpuBackend(const std::string& target, int num_threads) {
+std::unique_ptr<Backend> MakeCpuBackend(const std::string& target,
+                                        int num_threads) {
   return std::make_unique<CpuBackend>(FindCpuTarget(target), num_threads);
 }
 

@@ -1,40 +1,48 @@
 #include "src/cpu/cpu_views.h"
 
+#include "src/base/error.h"
+#include "src/cpu/texel_image.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "src/base/error.h"
-#include "src/cpu/texel_image.h"
-
 namespace hpm {
 
-CpuViews::CpuViews(const ViewSet& views, const MethodParams& params) : match_() {
+CpuViews::CpuViews(const ViewSet& views, const MethodParams& params)
+    : match_() {
   const GrayImage& ref = *views.ref.image;
   padding_ = params.patch_radius;
   padded_width_ = ref.width + 2 * padding_;
-  padded_ref_.resize(static_cast<size_t>(padded_width_) * (ref.height + 2 * padding_));
+  padded_ref_.resize(static_cast<size_t>(padded_width_) *
+                     (ref.height + 2 * padding_));
   for (int row = -padding_; row < ref.height + padding_; ++row) {
     const uint8_t* from =
-        &ref.data[static_cast<size_t>(std::clamp(row, 0, ref.height - 1)) * ref.width];
-    uint8_t* to = &padded_ref_[static_cast<size_t>(row + padding_) * padded_width_];
+        &ref.data[static_cast<size_t>(std::clamp(row, 0, ref.height - 1)) *
+                  ref.width];
+    uint8_t* to =
+        &padded_ref_[static_cast<size_t>(row + padding_) * padded_width_];
     std::fill_n(to, padding_, from[0]);
     std::copy_n(from, ref.width, to + padding_);
     std::fill_n(to + padding_ + ref.width, padding_, from[ref.width - 1]);
   }
 
   match_.ref = views.ref.camera;
-  match_.shape = MakePatchShape(params.patch_radius, params.sigma_spatial, params.sigma_color);
+  match_.shape = MakePatchShape(
+      params.patch_radius, params.sigma_spatial, params.sigma_color);
   for (int i = 0; i < 256; ++i) {
-    color_weights_[i] = std::exp(-static_cast<float>(i) * match_.shape.color_falloff);
+    color_weights_[i] =
+        std::exp(-static_cast<float>(i) * match_.shape.color_falloff);
   }
 
   size_t num_texels = 0;
   for (const View& src : views.srcs) num_texels += src.image->data.size();
   if (num_texels > static_cast<size_t>(std::numeric_limits<int32_t>::max())) {
     throw Error(ErrorCode::kOutOfResources,
-                "the source images of one reference have more than 2^31 pixels together; set "
-                "--PatchMatchStereo.max_image_size or fewer sources in patch-match.cfg");
+                "the source images of one reference have more than 2^31 pixels "
+                "together; set "
+                "--PatchMatchStereo.max_image_size or fewer sources in "
+                "patch-match.cfg");
   }
   texels_.resize(num_texels);
   size_t offset = 0;
@@ -45,8 +53,10 @@ CpuViews::CpuViews(const ViewSet& views, const MethodParams& params) : match_() 
     to_ref_.push_back(MakeViewWarp(src.camera, views.ref.camera));
     inverse_depths_.push_back(src.inverse_depth);
     src_centers_.push_back(CamFromWorld(views.ref.camera, Center(src.camera)));
-    const Vec3f baseline = src.camera.R * (Center(views.ref.camera) - Center(src.camera));
-    parallax_ = std::max(parallax_, std::max(src.camera.fx, src.camera.fy) * Norm(baseline));
+    const Vec3f baseline =
+        src.camera.R * (Center(views.ref.camera) - Center(src.camera));
+    parallax_ = std::max(
+        parallax_, std::max(src.camera.fx, src.camera.fy) * Norm(baseline));
     const ViewWarp& warp = to_src_.back();
     for (int i = 0; i < 9; ++i) match_.M[i][j] = warp.M.m[i];
     match_.v[0][j] = warp.v.x;
@@ -62,31 +72,50 @@ CpuViews::CpuViews(const ViewSet& views, const MethodParams& params) : match_() 
 }
 
 RefPatch CpuViews::PatchAt(int col, int row) const {
-  const uint8_t* origin =
-      padded_ref_.data() + static_cast<size_t>(padding_) * padded_width_ + padding_;
+  const uint8_t* origin = padded_ref_.data() +
+                          static_cast<size_t>(padding_) * padded_width_ +
+                          padding_;
   return MakeRefPatch(
       match_.shape,
       [&](int c, int r) {
-        return static_cast<float>(origin[static_cast<ptrdiff_t>(r) * padded_width_ + c]);
+        return static_cast<float>(
+            origin[static_cast<ptrdiff_t>(r) * padded_width_ + c]);
       },
-      [&](float difference) { return color_weights_[static_cast<int>(difference)]; }, col, row);
+      [&](float difference) {
+        return color_weights_[static_cast<int>(difference)];
+      },
+      col,
+      row);
 }
 
-float CpuViews::GeometricError(
-    const PlaneSlope& slope, int view, float col, float row, float max_error) const {
-  // Without a depth map the view has no say; an error would count against every hypothesis.
+float CpuViews::GeometricError(const PlaneSlope& slope,
+                               int view,
+                               float col,
+                               float row,
+                               float max_error) const {
+  // Without a depth map the view has no say; an error would count against every
+  // hypothesis.
   if (inverse_depths_[view] == nullptr) return 0;
   const float* inverse_depth = inverse_depths_[view]->data();
   const int width = to_src_[view].width;
   const int height = to_src_[view].height;
-  return ReprojectionError(to_src_[view], to_ref_[view], slope, col, row, max_error,
-                           [&](float u, float v) {
-                             return InterpolateInverseDepth(
-                                 [&](int c, int r) {
-                                   return inverse_depth[static_cast<size_t>(r) * width + c];
-                                 },
-                                 width, height, u, v);
-                           });
+  return ReprojectionError(
+      to_src_[view],
+      to_ref_[view],
+      slope,
+      col,
+      row,
+      max_error,
+      [&](float u, float v) {
+        return InterpolateInverseDepth(
+            [&](int c, int r) {
+              return inverse_depth[static_cast<size_t>(r) * width + c];
+            },
+            width,
+            height,
+            u,
+            v);
+      });
 }
 
 uint64_t CpuViews::MemoryNeeded(int width, int height, int num_srcs) {

@@ -2,13 +2,13 @@
 // Cost object of a pixel visit (see src/core/visit.h).
 #pragma once
 
-#include <memory>
-#include <vector>
-
 #include "src/core/geometric_term.h"
 #include "src/cpu/match_cost.h"
 #include "src/engine/pass.h"
 #include "src/engine/view.h"
+
+#include <memory>
+#include <vector>
 
 namespace hpm {
 
@@ -21,12 +21,16 @@ class CpuViews {
   // Camera centre of a source view in the reference camera frame.
   const std::vector<Vec3f>& src_centers() const { return src_centers_; }
 
-  // Pixels that a source position moves per unit of -1/z of the plane, about: the
-  // largest focal length times baseline.
+  // Pixels that a source position moves per unit of -1/z of the plane, about:
+  // the largest focal length times baseline.
   float parallax() const { return parallax_; }
 
   RefPatch PatchAt(int col, int row) const;
-  float GeometricError(const PlaneSlope& slope, int view, float col, float row, float max_error) const;
+  float GeometricError(const PlaneSlope& slope,
+                       int view,
+                       float col,
+                       float row,
+                       float max_error) const;
 
   // Bytes for one reference of this size.
   static uint64_t MemoryNeeded(int width, int height, int num_srcs);
@@ -46,8 +50,11 @@ class CpuViews {
 
 class CpuPixelCost {
  public:
-  CpuPixelCost(
-      const CpuViews& views, MatchCostFunction match_cost, float max_geometric_error, int col, int row)
+  CpuPixelCost(const CpuViews& views,
+               MatchCostFunction match_cost,
+               float max_geometric_error,
+               int col,
+               int row)
       : views_(views),
         match_cost_(match_cost),
         max_geometric_error_(max_geometric_error),
@@ -60,13 +67,23 @@ class CpuPixelCost {
                    const uint8_t* views,
                    int num_views,
                    float* costs) const {
-    match_cost_(views_.match(), patch_, col_, row_, planes, num_planes, views, num_views, costs);
+    match_cost_(views_.match(),
+                patch_,
+                col_,
+                row_,
+                planes,
+                num_planes,
+                views,
+                num_views,
+                costs);
     num_evaluations_ += static_cast<uint64_t>(num_planes) * num_views;
   }
 
   float GeometricError(const Plane& plane, int view) const {
-    return views_.GeometricError(SlopeOf(views_.match().ref, plane), view,
-                                 static_cast<float>(col_), static_cast<float>(row_),
+    return views_.GeometricError(SlopeOf(views_.match().ref, plane),
+                                 view,
+                                 static_cast<float>(col_),
+                                 static_cast<float>(row_),
                                  max_geometric_error_);
   }
 

@@ -1,12 +1,13 @@
 // The matching cost of src/core/match_cost.h for many (plane, view) pairs at
-// once, one pair per SIMD lane, with runtime dispatch over the machine's targets.
+// once, one pair per SIMD lane, with runtime dispatch over the machine's
+// targets.
 #pragma once
+
+#include "src/core/match_cost.h"
 
 #include <cstdint>
 #include <string>
 #include <vector>
-
-#include "src/core/match_cost.h"
 
 namespace hpm {
 
@@ -25,7 +26,8 @@ struct MatchViews {
   alignas(64) int32_t offset[kMaxViews];  // of the image in `texels`, in texels
 };
 
-// Computes costs[i * num_src + k] of planes[i] in view views[k] at pixel (col, row).
+// Computes costs[i * num_src + k] of planes[i] in view views[k] at pixel (col,
+// row).
 using MatchCostFunction = void (*)(const MatchViews& match,
                                    const RefPatch& patch,
                                    int col,

@@ -1,10 +1,10 @@
 // Compiled once per SIMD target (Highway); see match_cost.h.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "src/cpu/match_cost_simd.cc"
+#include "src/cpu/match_cost.h"
+
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
-
-#include "src/cpu/match_cost.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hpm {
@@ -67,7 +67,8 @@ HWY_INLINE void FillPairs(const MatchViews& match,
       pairs->offset[pair] = match.offset[view];
     }
   }
-  // A vector store past the views of one plane is overwritten by the next plane.
+  // A vector store past the views of one plane is overwritten by the next
+  // plane.
   for (int p = 0; p < num_planes; ++p) {
     const PlaneSlope m = SlopeOf(match.ref, planes[p]);
     const VF m_col = hn::Set(df, m.col);
@@ -77,11 +78,14 @@ HWY_INLINE void FillPairs(const MatchViews& match,
       const int pair = p * num_views + k;
       for (int i = 0; i < 3; ++i) {
         const VF v = hn::Load(df, chosen.v[i] + k);
-        hn::StoreU(hn::NegMulAdd(m_here, v, hn::Load(df, chosen.origin[i] + k)), df,
+        hn::StoreU(hn::NegMulAdd(m_here, v, hn::Load(df, chosen.origin[i] + k)),
+                   df,
                    pairs->origin[i] + pair);
-        hn::StoreU(hn::NegMulAdd(m_col, v, hn::Load(df, chosen.dcol[i] + k)), df,
+        hn::StoreU(hn::NegMulAdd(m_col, v, hn::Load(df, chosen.dcol[i] + k)),
+                   df,
                    pairs->dcol[i] + pair);
-        hn::StoreU(hn::NegMulAdd(m_row, v, hn::Load(df, chosen.drow[i] + k)), df,
+        hn::StoreU(hn::NegMulAdd(m_row, v, hn::Load(df, chosen.drow[i] + k)),
+                   df,
                    pairs->drow[i] + pair);
       }
     }
@@ -89,8 +93,10 @@ HWY_INLINE void FillPairs(const MatchViews& match,
 }
 
 // Costs of one vector of pairs, from `first` on.
-HWY_INLINE VF
-PairCosts(const MatchViews& match, const RefPatch& patch, const Pairs& pairs, int first) {
+HWY_INLINE VF PairCosts(const MatchViews& match,
+                        const RefPatch& patch,
+                        const Pairs& pairs,
+                        int first) {
   const DF df;
   const DI di;
   const VF zero = hn::Zero(df);
@@ -108,15 +114,18 @@ PairCosts(const MatchViews& match, const RefPatch& patch, const Pairs& pairs, in
   }
 
   // Visibility, as IsVisible(). NaN compares false, hence invisible.
-  const VF radius = hn::Set(df, static_cast<float>(match.shape.offset[kPatchAxis - 1]));
-  const VF nearest =
-      hn::NegMulAdd(radius, hn::Add(hn::Abs(dcol[2]), hn::Abs(drow[2])), origin[2]);
+  const VF radius =
+      hn::Set(df, static_cast<float>(match.shape.offset[kPatchAxis - 1]));
+  const VF nearest = hn::NegMulAdd(
+      radius, hn::Add(hn::Abs(dcol[2]), hn::Abs(drow[2])), origin[2]);
   const VF u0 = hn::Div(origin[0], origin[2]);
   const VF v0 = hn::Div(origin[1], origin[2]);
   const VF low = hn::Neg(half);
-  auto visible = hn::And(hn::Gt(nearest, zero), hn::And(hn::Ge(u0, low), hn::Ge(v0, low)));
-  visible = hn::And(visible, hn::And(hn::Le(u0, hn::Add(max_u, half)),
-                                     hn::Le(v0, hn::Add(max_v, half))));
+  auto visible =
+      hn::And(hn::Gt(nearest, zero), hn::And(hn::Ge(u0, low), hn::Ge(v0, low)));
+  visible = hn::And(visible,
+                    hn::And(hn::Le(u0, hn::Add(max_u, half)),
+                            hn::Le(v0, hn::Add(max_v, half))));
   const VF worst = hn::Set(df, kMaxCost);
   if (hn::AllFalse(df, visible)) return worst;
   // Invisible lanes go along on a harmless position.
@@ -150,8 +159,10 @@ PairCosts(const MatchViews& match, const RefPatch& patch, const Pairs& pairs, in
       const VI texel = hn::GatherIndex(di, texels, index);
       const VF p00 = hn::ConvertTo(df, hn::And(texel, byte));
       const VF p01 = hn::ConvertTo(df, hn::And(hn::ShiftRight<8>(texel), byte));
-      const VF p10 = hn::ConvertTo(df, hn::And(hn::ShiftRight<16>(texel), byte));
-      const VF p11 = hn::ConvertTo(df, hn::And(hn::ShiftRight<24>(texel), byte));
+      const VF p10 =
+          hn::ConvertTo(df, hn::And(hn::ShiftRight<16>(texel), byte));
+      const VF p11 =
+          hn::ConvertTo(df, hn::And(hn::ShiftRight<24>(texel), byte));
       const VF top = hn::MulAdd(fu, hn::Sub(p01, p00), p00);
       const VF bottom = hn::MulAdd(fu, hn::Sub(p11, p10), p10);
       const VF s = hn::Sub(hn::MulAdd(fv, hn::Sub(bottom, top), top), center);
@@ -165,10 +176,12 @@ PairCosts(const MatchViews& match, const RefPatch& patch, const Pairs& pairs, in
   const VF min_variance = hn::Set(df, kMinVariance);
   const VF variance = hn::NegMulAdd(sum_s, sum_s, sum_ss);
   const VF covariance = hn::NegMulAdd(hn::Set(df, patch.mean), sum_s, sum_rs);
-  const VF scale =
-      hn::Sqrt(hn::Mul(hn::Set(df, patch.variance), hn::Max(variance, min_variance)));
-  const VF cost = hn::Min(hn::Max(hn::Sub(one, hn::Div(covariance, scale)), zero), worst);
-  return hn::IfThenElse(hn::And(visible, hn::Ge(variance, min_variance)), cost, worst);
+  const VF scale = hn::Sqrt(
+      hn::Mul(hn::Set(df, patch.variance), hn::Max(variance, min_variance)));
+  const VF cost =
+      hn::Min(hn::Max(hn::Sub(one, hn::Div(covariance, scale)), zero), worst);
+  return hn::IfThenElse(
+      hn::And(visible, hn::Ge(variance, min_variance)), cost, worst);
 }
 
 void MatchCosts(const MatchViews& match,
@@ -188,8 +201,14 @@ void MatchCosts(const MatchViews& match,
     return;
   }
   Pairs pairs;
-  FillPairs(match, static_cast<float>(col), static_cast<float>(row), planes, num_planes, views,
-            num_views, &pairs);
+  FillPairs(match,
+            static_cast<float>(col),
+            static_cast<float>(row),
+            planes,
+            num_planes,
+            views,
+            num_views,
+            &pairs);
   // Lanes behind the last pair: a copy of nothing, seen by no camera.
   for (int pair = num_pairs; pair % lanes != 0; ++pair) {
     pairs.origin[2][pair] = -1;
@@ -214,13 +233,13 @@ void MatchCosts(const MatchViews& match,
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+#include "src/base/error.h"
+
 #include <algorithm>
 #include <cctype>
 #include <iterator>
 
 #include <hwy/targets.h>
-
-#include "src/base/error.h"
 
 namespace hpm {
 namespace {
@@ -249,24 +268,34 @@ void ScalarMatchCosts(const MatchViews& match,
         const float cu = Clamp(u, 0.0f, match.max_u[view]);
         const float cv = Clamp(v, 0.0f, match.max_v[view]);
         const int iu = static_cast<int>(cu), iv = static_cast<int>(cv);
-        const float fu = cu - static_cast<float>(iu), fv = cv - static_cast<float>(iv);
-        const uint32_t texel = texels[static_cast<size_t>(iv) * match.stride[view] + iu];
-        const float p00 = static_cast<float>(texel & 255), p01 = static_cast<float>(texel >> 8 & 255);
-        const float p10 = static_cast<float>(texel >> 16 & 255), p11 = static_cast<float>(texel >> 24);
-        const float top = p00 + fu * (p01 - p00), bottom = p10 + fu * (p11 - p10);
+        const float fu = cu - static_cast<float>(iu),
+                    fv = cv - static_cast<float>(iv);
+        const uint32_t texel =
+            texels[static_cast<size_t>(iv) * match.stride[view] + iu];
+        const float p00 = static_cast<float>(texel & 255),
+                    p01 = static_cast<float>(texel >> 8 & 255);
+        const float p10 = static_cast<float>(texel >> 16 & 255),
+                    p11 = static_cast<float>(texel >> 24);
+        const float top = p00 + fu * (p01 - p00),
+                    bottom = p10 + fu * (p11 - p10);
         return top + fv * (bottom - top);
       };
       costs[p * num_views + k] = MatchCost(
-          match.shape, patch,
-          WarpPatch(warp, slope, static_cast<float>(col), static_cast<float>(row)), sample,
-          static_cast<int>(match.max_u[view]) + 1, static_cast<int>(match.max_v[view]) + 1);
+          match.shape,
+          patch,
+          WarpPatch(
+              warp, slope, static_cast<float>(col), static_cast<float>(row)),
+          sample,
+          static_cast<int>(match.max_u[view]) + 1,
+          static_cast<int>(match.max_v[view]) + 1);
     }
   }
 }
 
 std::string LowerCase(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) {
+    return static_cast<char>(std::tolower(c));
+  });
   return text;
 }
 
@@ -275,11 +304,13 @@ std::string LowerCase(std::string text) {
 std::vector<CpuTarget> CpuTargets() {
   std::vector<CpuTarget> targets;
   for (const int64_t target : hwy::SupportedAndGeneratedTargets()) {
+    if (target == HWY_SCALAR) continue;  // ours is the readable one
     hwy::ChosenTarget chosen;  // our own, not Highway's process-wide one
     chosen.Update(target);
-    const size_t index = std::size(HWY_DISPATCH_TABLE(MatchCosts)) > 1 ? chosen.GetIndex() : 0;
-    targets.push_back(
-        {LowerCase(hwy::TargetName(target)), HWY_DISPATCH_TABLE(MatchCosts)[index]});
+    const size_t index =
+        std::size(HWY_DISPATCH_TABLE(MatchCosts)) > 1 ? chosen.GetIndex() : 0;
+    targets.push_back({LowerCase(hwy::TargetName(target)),
+                       HWY_DISPATCH_TABLE(MatchCosts)[index]});
   }
   targets.push_back({"scalar", &ScalarMatchCosts});
   return targets;
@@ -294,7 +325,8 @@ CpuTarget FindCpuTarget(const std::string& name) {
     names += ", " + target.name;
   }
   throw Error(ErrorCode::kUsage,
-              "--Hpm.cpu_target " + name + ": not available on this machine; use one of " + names);
+              "--Hpm.cpu_target " + name +
+                  ": not available on this machine; use one of " + names);
 }
 
 }  // namespace hpm

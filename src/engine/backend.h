@@ -1,16 +1,16 @@
 // The narrow waist between the schedule and whatever computes: CPU or CUDA.
 #pragma once
 
+#include "src/base/cancel.h"
+#include "src/core/consistency_filter.h"
+#include "src/engine/pass.h"
+#include "src/engine/view.h"
+#include "src/image/hypothesis_map.h"
+
 #include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
-
-#include "src/base/cancel.h"
-#include "src/core/consistency_filter.h"
-#include "src/image/hypothesis_map.h"
-#include "src/engine/pass.h"
-#include "src/engine/view.h"
 
 namespace hpm {
 
@@ -27,7 +27,10 @@ class Backend {
   virtual std::string Name() const = 0;
 
   // Working memory, in bytes, for one reference of this size beside its images.
-  virtual uint64_t MemoryNeeded(int width, int height, int num_srcs, bool geometric) const = 0;
+  virtual uint64_t MemoryNeeded(int width,
+                                int height,
+                                int num_srcs,
+                                bool geometric) const = 0;
 
   // Takes the images and cameras of a problem; replaces the problem before.
   virtual void SetViews(const ViewSet& views, const MethodParams& params) = 0;

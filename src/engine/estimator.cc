@@ -21,11 +21,15 @@ HypothesisMap EstimatePhotometric(Backend* backend,
     const Pass& pass = schedule.photometric[i];
     RunControl pass_control = control;
     pass_control.progress = [&](double fraction) {
-      if (control.progress) control.progress((static_cast<double>(i) + fraction) / num_passes);
+      if (control.progress)
+        control.progress((static_cast<double>(i) + fraction) / num_passes);
     };
     if (pass.kind == PassKind::kPrior) {
       PhaseTimer timer(times, "build prior");
-      map.priors = BuildPrior(map, views.ref.camera, *views.ref.image, pass.level,
+      map.priors = BuildPrior(map,
+                              views.ref.camera,
+                              *views.ref.image,
+                              pass.level,
                               {views.depth_min, views.depth_max});
     } else {
       map.priors.clear();

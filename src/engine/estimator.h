@@ -1,11 +1,11 @@
 // Runs the passes of a schedule for one reference image.
 #pragma once
 
-#include <map>
-#include <string>
-
 #include "src/engine/backend.h"
 #include "src/engine/schedule.h"
+
+#include <map>
+#include <string>
 
 namespace hpm {
 

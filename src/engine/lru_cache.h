@@ -23,7 +23,9 @@ class LruCache {
     return it->second->value;
   }
 
-  void Insert(const Key& key, std::shared_ptr<const Value> value, uint64_t num_bytes) {
+  void Insert(const Key& key,
+              std::shared_ptr<const Value> value,
+              uint64_t num_bytes) {
     if (num_bytes > max_bytes_ || index_.count(key) > 0) return;
     entries_.push_front({key, std::move(value), num_bytes});
     index_[key] = entries_.begin();

@@ -11,19 +11,21 @@ namespace hpm {
 // Numbers of the algorithm that users may set; the defaults are those of the
 // paper and its code (specification appendix B).
 struct MethodParams {
-  int patch_radius = 5;             // pixels
-  float sigma_spatial = 5;          // pixels
-  float sigma_color = 3;            // grey levels
+  int patch_radius = 5;     // pixels
+  float sigma_spatial = 5;  // pixels
+  float sigma_color = 3;    // grey levels
   int num_view_draws = 15;
   float depth_perturbation = 0.02f;        // relative
   float normal_perturbation = 0.0314159f;  // radians per axis
-  float same_plane_bound = 0.05f;   // pixels; planes closer than this share their costs
-  float geom_weight = 0.1f;         // cost per pixel of reprojection error
-  float geom_max_error = 5;         // pixels
+  float same_plane_bound =
+      0.05f;  // pixels; planes closer than this share their costs
+  float geom_weight = 0.1f;  // cost per pixel of reprojection error
+  float geom_max_error = 5;  // pixels
   float prior_gamma = 0.5f;
   float prior_beta = 0.18f;
-  float prior_depth_share = 1.0f / 64;     // sigma of the prior's depth / depth range
-  float prior_angle = 0.0872665f;   // radians
+  float prior_depth_share =
+      1.0f / 64;                   // sigma of the prior's depth / depth range
+  float prior_angle = 0.0872665f;  // radians
 };
 
 enum class PassKind { kBasic, kPrior, kGeometric };

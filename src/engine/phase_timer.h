@@ -13,7 +13,8 @@ class PhaseTimer {
   PhaseTimer(std::map<std::string, double>* times, std::string phase)
       : times_(times), phase_(std::move(phase)), start_(Clock::now()) {}
   ~PhaseTimer() {
-    (*times_)[phase_] += std::chrono::duration<double>(Clock::now() - start_).count();
+    (*times_)[phase_] +=
+        std::chrono::duration<double>(Clock::now() - start_).count();
   }
   PhaseTimer(const PhaseTimer&) = delete;
   PhaseTimer& operator=(const PhaseTimer&) = delete;

@@ -1,9 +1,9 @@
 #include "src/engine/schedule.h"
 
-#include <algorithm>
-
 #include "src/base/error.h"
 #include "src/core/sampling_pattern.h"
+
+#include <algorithm>
 
 namespace hpm {
 namespace {
@@ -30,16 +30,21 @@ constexpr Method kMethods[] = {
     {"hpm", true, true, Priors::kAll},
 };
 
-// Halvings until the longer side is at most this many pixels (specification 1.2).
+// Halvings until the longer side is at most this many pixels
+// (specification 1.2).
 constexpr int kCoarsestSide = 1000;
 
 // Levels of the prior hierarchy, coarsest first.
-std::vector<int> PriorLevels(Priors priors, int num_levels, int width, int height) {
+std::vector<int> PriorLevels(Priors priors,
+                             int num_levels,
+                             int width,
+                             int height) {
   if (priors == Priors::kNone) return {};
   if (priors == Priors::kFull) return {0};
   if (num_levels < 0) {
     num_levels = 1;
-    for (int side = std::max(width, height); side > kCoarsestSide; side /= 2) ++num_levels;
+    for (int side = std::max(width, height); side > kCoarsestSide; side /= 2)
+      ++num_levels;
   }
   std::vector<int> levels;
   for (int level = num_levels - 1; level >= 0; --level) levels.push_back(level);
@@ -61,22 +66,34 @@ Schedule MakeSchedule(const ScheduleOptions& options, int width, int height) {
     Schedule schedule;
     schedule.pattern = MakeSamplingPattern(method.non_local, method.extensible);
     int id = 0;
-    schedule.photometric.push_back(
-        {PassKind::kBasic, StartFrom::kRandom, options.num_iterations, id++, 0});
-    for (const int level : PriorLevels(method.priors, options.num_levels, width, height)) {
-      schedule.photometric.push_back(
-          {PassKind::kPrior, StartFrom::kPrior, options.num_iterations, id++, level});
+    schedule.photometric.push_back({PassKind::kBasic,
+                                    StartFrom::kRandom,
+                                    options.num_iterations,
+                                    id++,
+                                    0});
+    for (const int level :
+         PriorLevels(method.priors, options.num_levels, width, height)) {
+      schedule.photometric.push_back({PassKind::kPrior,
+                                      StartFrom::kPrior,
+                                      options.num_iterations,
+                                      id++,
+                                      level});
     }
     for (int i = 0; i < options.num_geom_passes; ++i) {
-      schedule.geometric.push_back(
-          {PassKind::kGeometric, StartFrom::kCurrent, options.num_geom_iterations, id++, 0});
+      schedule.geometric.push_back({PassKind::kGeometric,
+                                    StartFrom::kCurrent,
+                                    options.num_geom_iterations,
+                                    id++,
+                                    0});
     }
     return schedule;
   }
   std::string names;
-  for (const std::string& name : MethodNames()) names += (names.empty() ? "" : ", ") + name;
-  throw Error(ErrorCode::kUsage,
-              "--Hpm.method " + options.method + ": unknown; use one of " + names);
+  for (const std::string& name : MethodNames())
+    names += (names.empty() ? "" : ", ") + name;
+  throw Error(
+      ErrorCode::kUsage,
+      "--Hpm.method " + options.method + ": unknown; use one of " + names);
 }
 
 }  // namespace hpm

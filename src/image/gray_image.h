@@ -13,7 +13,9 @@ struct GrayImage {
   int height = 0;
   std::vector<uint8_t> data;
 
-  uint8_t at(int col, int row) const { return data[static_cast<size_t>(row) * width + col]; }
+  uint8_t at(int col, int row) const {
+    return data[static_cast<size_t>(row) * width + col];
+  }
 };
 
 }  // namespace hpm

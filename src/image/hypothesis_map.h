@@ -1,11 +1,12 @@
-// One plane hypothesis per pixel of a reference image, with what a run knows of it.
+// One plane hypothesis per pixel of a reference image, with what a run knows of
+// it.
 #pragma once
+
+#include "src/core/pixel_state.h"
 
 #include <cstddef>
 #include <cstdint>
 #include <vector>
-
-#include "src/core/pixel_state.h"
 
 namespace hpm {
 
@@ -16,7 +17,8 @@ struct HypothesisMap {
   std::vector<Plane> planes;    // distance 0: no hypothesis yet
   std::vector<float> costs;     // see PixelState
   std::vector<uint32_t> masks;  // see PixelState
-  std::vector<Plane> priors;    // empty: no priors; distance 0: none at this pixel
+  std::vector<Plane>
+      priors;  // empty: no priors; distance 0: none at this pixel
 
   HypothesisMap() = default;
   HypothesisMap(int w, int h)
@@ -27,7 +29,11 @@ struct HypothesisMap {
         masks(static_cast<size_t>(w) * h, 0) {}
 
   PixelState View() {
-    return {width, height, planes.data(), costs.data(), masks.data(),
+    return {width,
+            height,
+            planes.data(),
+            costs.data(),
+            masks.data(),
             priors.empty() ? nullptr : priors.data()};
   }
 };

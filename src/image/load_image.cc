@@ -1,10 +1,9 @@
 #include "src/image/load_image.h"
 
+#include "src/base/error.h"
 
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
-
-#include "src/base/error.h"
 
 namespace hpm {
 namespace {
@@ -13,13 +12,17 @@ cv::Mat Decode(const std::filesystem::path& path) {
   // OpenCV refuses more than 2^30 pixels by itself, from the header.
   cv::Mat image;
   try {
-    image = cv::imread(path.string(), cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
+    image = cv::imread(path.string(),
+                       cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
   } catch (const cv::Exception& e) {
-    throw Error(ErrorCode::kBadInput, path.string() + ": cannot be decoded (" + e.err + ")");
+    throw Error(ErrorCode::kBadInput,
+                path.string() + ": cannot be decoded (" + e.err + ")");
   }
   if (image.empty()) {
-    throw Error(ErrorCode::kBadInput,
-                path.string() + ": missing or not a readable image; undistort the images again");
+    throw Error(
+        ErrorCode::kBadInput,
+        path.string() +
+            ": missing or not a readable image; undistort the images again");
   }
   return image;
 }
@@ -34,8 +37,8 @@ GrayImage ToGray(const cv::Mat& bgr) {
   for (int row = 0; row < bgr.rows; ++row) {
     const uint8_t* p = bgr.ptr<uint8_t>(row);
     for (int col = 0; col < bgr.cols; ++col, p += 3) {
-      gray.data[i++] =
-          static_cast<uint8_t>(0.0722f * p[0] + 0.7152f * p[1] + 0.2126f * p[2] + 0.5f);
+      gray.data[i++] = static_cast<uint8_t>(0.0722f * p[0] + 0.7152f * p[1] +
+                                            0.2126f * p[2] + 0.5f);
     }
   }
   return gray;
@@ -43,7 +46,9 @@ GrayImage ToGray(const cv::Mat& bgr) {
 
 }  // namespace
 
-GrayImage LoadGrayImage(const std::filesystem::path& path, int width, int height) {
+GrayImage LoadGrayImage(const std::filesystem::path& path,
+                        int width,
+                        int height) {
   GrayImage gray = ToGray(Decode(path));
   if (gray.width == width && gray.height == height) return gray;
   const cv::Mat from(gray.height, gray.width, CV_8U, gray.data.data());

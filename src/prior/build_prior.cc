@@ -10,7 +10,8 @@ std::vector<Plane> BuildPrior(const HypothesisMap& map,
                               int level,
                               const PriorRange& range) {
   const LevelMap reduced = MakeLevel(map, camera, level);
-  const std::vector<CrediblePoint> points = FindCrediblePoints(reduced, kCredibleCost);
+  const std::vector<CrediblePoint> points =
+      FindCrediblePoints(reduced, kCredibleCost);
   std::vector<Plane> planes = MakePlanarPrior(reduced.camera, points, range);
   if (level == 0) return planes;
   return UpsamplePrior(planes, level, camera, guide, range);

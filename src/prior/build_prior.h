@@ -1,18 +1,19 @@
 // The prior of one level, at full resolution: what a prior-assisted pass needs.
 #pragma once
 
-#include <vector>
-
-#include "src/image/hypothesis_map.h"
 #include "src/image/gray_image.h"
+#include "src/image/hypothesis_map.h"
 #include "src/prior/planar_prior.h"
+
+#include <vector>
 
 namespace hpm {
 
 // Costs below this make a point credible (tau of the paper).
 constexpr float kCredibleCost = 0.1f;
 
-// One plane per pixel of `map`, distance 0 = none. `guide` is the reference image.
+// One plane per pixel of `map`, distance 0 = none. `guide` is the reference
+// image.
 std::vector<Plane> BuildPrior(const HypothesisMap& map,
                               const Camera& camera,
                               const GrayImage& guide,

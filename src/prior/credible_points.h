@@ -2,19 +2,20 @@
 // (HPM-MVS section 3.2; specification 7.2).
 #pragma once
 
-#include <vector>
-
 #include "src/prior/level.h"
+
+#include <vector>
 
 namespace hpm {
 
 struct CrediblePoint {
-  int col, row;   // level pixel
+  int col, row;    // level pixel
   Vec3f position;  // reference camera frame, model units
 };
 
 // In each cell of 5x5 level pixels the one of smallest cost, if that is below
 // `max_cost`. Row-major over cells.
-std::vector<CrediblePoint> FindCrediblePoints(const LevelMap& level, float max_cost);
+std::vector<CrediblePoint> FindCrediblePoints(const LevelMap& level,
+                                              float max_cost);
 
 }  // namespace hpm

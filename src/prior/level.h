@@ -2,9 +2,9 @@
 // specification 7.1). Level l halves the image l times.
 #pragma once
 
-#include <vector>
-
 #include "src/image/hypothesis_map.h"
+
+#include <vector>
 
 namespace hpm {
 
@@ -14,7 +14,8 @@ struct LevelMap {
   std::vector<float> costs;
 };
 
-// Keeps the half-pixel: the centre of level pixel x lies at (x + 0.5) * 2^l - 0.5.
+// Keeps the half-pixel: the centre of level pixel x lies at (x + 0.5) * 2^l -
+// 0.5.
 Camera LevelCamera(const Camera& camera, int level);
 
 // In each block of full-resolution pixels the one of smallest cost speaks for

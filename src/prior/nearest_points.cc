@@ -10,8 +10,9 @@ struct NearestPoints::Index {
 
   explicit Index(std::vector<float> xy)
       : coordinates(std::move(xy)),
-        tree(flann::Matrix<float>(coordinates.data(), coordinates.size() / 2, 2),
-             flann::KDTreeSingleIndexParams()) {
+        tree(
+            flann::Matrix<float>(coordinates.data(), coordinates.size() / 2, 2),
+            flann::KDTreeSingleIndexParams()) {
     tree.buildIndex();
   }
 };
@@ -27,14 +28,19 @@ NearestPoints::NearestPoints(const std::vector<CrediblePoint>& points) {
 
 NearestPoints::~NearestPoints() = default;
 
-std::vector<int> NearestPoints::Find(const std::vector<float>& queries_col_row) const {
+std::vector<int> NearestPoints::Find(
+    const std::vector<float>& queries_col_row) const {
   const size_t num_queries = queries_col_row.size() / 2;
   std::vector<int> indices(num_queries * kNumNearest);
   std::vector<float> distances(num_queries * kNumNearest);
-  const flann::Matrix<float> queries(const_cast<float*>(queries_col_row.data()), num_queries, 2);
+  const flann::Matrix<float> queries(
+      const_cast<float*>(queries_col_row.data()), num_queries, 2);
   flann::Matrix<int> result(indices.data(), num_queries, kNumNearest);
   flann::Matrix<float> squared(distances.data(), num_queries, kNumNearest);
-  index_->tree.knnSearch(queries, result, squared, kNumNearest,
+  index_->tree.knnSearch(queries,
+                         result,
+                         squared,
+                         kNumNearest,
                          flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED));
   return indices;
 }

@@ -1,10 +1,10 @@
 // Exact nearest neighbours among credible points (FLANN KD-tree).
 #pragma once
 
+#include "src/prior/credible_points.h"
+
 #include <memory>
 #include <vector>
-
-#include "src/prior/credible_points.h"
 
 namespace hpm {
 
@@ -16,9 +16,9 @@ class NearestPoints {
   explicit NearestPoints(const std::vector<CrediblePoint>& points);
   ~NearestPoints();
 
-  // Indices of the kNumNearest points nearest to each query pixel, nearest first;
-  // queries and result row by row. Points at the same distance: any order, but
-  // always the same.
+  // Indices of the kNumNearest points nearest to each query pixel, nearest
+  // first; queries and result row by row. Points at the same distance: any
+  // order, but always the same.
   std::vector<int> Find(const std::vector<float>& queries_col_row) const;
 
  private:

@@ -1,11 +1,11 @@
 #include "src/prior/planar_prior.h"
 
+#include "src/prior/nearest_points.h"
+#include "src/prior/triangulation.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
-
-#include "src/prior/nearest_points.h"
-#include "src/prior/triangulation.h"
 
 namespace hpm {
 namespace {
@@ -13,14 +13,18 @@ namespace {
 constexpr Plane kNoPlane = {{0, 0, 0}, 0};
 
 // Twice the signed area in pixels squared; exact on pixel coordinates.
-int64_t DoubledArea(const CrediblePoint& a, const CrediblePoint& b, const CrediblePoint& c) {
+int64_t DoubledArea(const CrediblePoint& a,
+                    const CrediblePoint& b,
+                    const CrediblePoint& c) {
   return static_cast<int64_t>(b.col - a.col) * (c.row - a.row) -
          static_cast<int64_t>(b.row - a.row) * (c.col - a.col);
 }
 
 // Plane through three points, facing the camera; kNoPlane if they are (nearly)
 // in line with each other or with the camera.
-Plane PlaneThrough(const CrediblePoint& a, const CrediblePoint& b, const CrediblePoint& c) {
+Plane PlaneThrough(const CrediblePoint& a,
+                   const CrediblePoint& b,
+                   const CrediblePoint& c) {
   const Vec3f cross = Cross(b.position - a.position, c.position - a.position);
   const float norm = Norm(cross);
   if (!(norm > 0)) return kNoPlane;
@@ -34,8 +38,13 @@ Plane PlaneThrough(const CrediblePoint& a, const CrediblePoint& b, const Credibl
   return {normal, distance};
 }
 
-bool IsInRange(const Camera& camera, const Plane& plane, int col, int row, const PriorRange& range) {
-  const float z = DepthAt(camera, plane, static_cast<float>(col), static_cast<float>(row));
+bool IsInRange(const Camera& camera,
+               const Plane& plane,
+               int col,
+               int row,
+               const PriorRange& range) {
+  const float z =
+      DepthAt(camera, plane, static_cast<float>(col), static_cast<float>(row));
   return z >= range.depth_min && z <= range.depth_max;
 }
 
@@ -55,25 +64,29 @@ void FillTriangle(const Camera& camera,
   for (int row = top; row <= bottom; ++row) {
     for (int col = left; col <= right; ++col) {
       const CrediblePoint p = {col, row, {0, 0, 0}};
-      if (sign * DoubledArea(*a, *b, p) < 0 || sign * DoubledArea(*b, *c, p) < 0 ||
+      if (sign * DoubledArea(*a, *b, p) < 0 ||
+          sign * DoubledArea(*b, *c, p) < 0 ||
           sign * DoubledArea(*c, *a, p) < 0) {
         continue;
       }
       const size_t at = static_cast<size_t>(row) * camera.width + col;
       if ((*covered)[at]) continue;
       (*covered)[at] = true;
-      if (plane.distance > 0 && IsInRange(camera, plane, col, row, range)) (*planes)[at] = plane;
+      if (plane.distance > 0 && IsInRange(camera, plane, col, row, range))
+        (*planes)[at] = plane;
     }
   }
 }
 
 // The first triple of the nearest points that is not collinear, nearest first
 // in the order of the specification (7.4).
-Plane NearestPlane(const std::vector<CrediblePoint>& points, const int* nearest) {
-  constexpr int kTriples[20][3] = {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}, {0, 2, 3}, {0, 2, 4},
-                                   {0, 3, 4}, {1, 2, 3}, {1, 2, 4}, {1, 3, 4}, {2, 3, 4},
-                                   {0, 1, 5}, {0, 2, 5}, {0, 3, 5}, {0, 4, 5}, {1, 2, 5},
-                                   {1, 3, 5}, {1, 4, 5}, {2, 3, 5}, {2, 4, 5}, {3, 4, 5}};
+Plane NearestPlane(const std::vector<CrediblePoint>& points,
+                   const int* nearest) {
+  constexpr int kTriples[20][3] = {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}, {0, 2, 3},
+                                   {0, 2, 4}, {0, 3, 4}, {1, 2, 3}, {1, 2, 4},
+                                   {1, 3, 4}, {2, 3, 4}, {0, 1, 5}, {0, 2, 5},
+                                   {0, 3, 5}, {0, 4, 5}, {1, 2, 5}, {1, 3, 5},
+                                   {1, 4, 5}, {2, 3, 5}, {2, 4, 5}, {3, 4, 5}};
   for (const auto& triple : kTriples) {
     const CrediblePoint& a = points[nearest[triple[0]]];
     const CrediblePoint& b = points[nearest[triple[1]]];
@@ -91,8 +104,13 @@ std::vector<Plane> MakePlanarPrior(const Camera& camera,
   const size_t size = static_cast<size_t>(camera.width) * camera.height;
   std::vector<Plane> planes(size, kNoPlane);
   std::vector<bool> covered(size, false);
-  for (const std::array<int, 3>& t : Triangulate(points, camera.width, camera.height)) {
-    FillTriangle(camera, {&points[t[0]], &points[t[1]], &points[t[2]]}, range, &planes, &covered);
+  for (const std::array<int, 3>& t :
+       Triangulate(points, camera.width, camera.height)) {
+    FillTriangle(camera,
+                 {&points[t[0]], &points[t[1]], &points[t[2]]},
+                 range,
+                 &planes,
+                 &covered);
   }
   if (points.size() < kNumNearest) return planes;
 
@@ -109,8 +127,11 @@ std::vector<Plane> MakePlanarPrior(const Camera& camera,
   for (size_t q = 0; q < query_pixels.size(); ++q) {
     const Plane plane = NearestPlane(points, &nearest[q * kNumNearest]);
     const size_t i = query_pixels[q];
-    if (plane.distance > 0 && IsInRange(camera, plane, static_cast<int>(i % camera.width),
-                                        static_cast<int>(i / camera.width), range)) {
+    if (plane.distance > 0 && IsInRange(camera,
+                                        plane,
+                                        static_cast<int>(i % camera.width),
+                                        static_cast<int>(i / camera.width),
+                                        range)) {
       planes[i] = plane;
     }
   }

@@ -2,9 +2,9 @@
 // (HPM-MVS section 3.2; specification 7.3 and 7.4).
 #pragma once
 
-#include <vector>
-
 #include "src/prior/credible_points.h"
+
+#include <vector>
 
 namespace hpm {
 

@@ -1,22 +1,24 @@
+#include "src/prior/triangulation.h"
+
 #include <map>
 #include <utility>
 
 #include <opencv2/imgproc.hpp>
 
-#include "src/prior/triangulation.h"
-
 namespace hpm {
 
-std::vector<std::array<int, 3>> Triangulate(const std::vector<CrediblePoint>& points,
-                                            int width,
-                                            int height) {
+std::vector<std::array<int, 3>> Triangulate(
+    const std::vector<CrediblePoint>& points, int width, int height) {
   std::map<std::pair<int, int>, int> index_of;
   // One pixel of margin: points on the border of the rectangle are refused.
   cv::Subdiv2D subdivision(cv::Rect(-1, -1, width + 2, height + 2));
   for (size_t i = 0; i < points.size(); ++i) {
     const CrediblePoint& p = points[i];
-    if (!index_of.emplace(std::make_pair(p.col, p.row), static_cast<int>(i)).second) continue;
-    subdivision.insert(cv::Point2f(static_cast<float>(p.col), static_cast<float>(p.row)));
+    if (!index_of.emplace(std::make_pair(p.col, p.row), static_cast<int>(i))
+             .second)
+      continue;
+    subdivision.insert(
+        cv::Point2f(static_cast<float>(p.col), static_cast<float>(p.row)));
   }
   std::vector<cv::Vec6f> corners;
   if (index_of.size() >= 3) subdivision.getTriangleList(corners);

@@ -1,13 +1,13 @@
-// Joint bilateral upsampling of a prior to full resolution (HPM-MVS section 3.3;
-// specification section 8, with its corrections: planes are evaluated at the
-// pixel, so slanted surfaces stay exact; missing taps are skipped; the guide is
-// read where the tap lies).
+// Joint bilateral upsampling of a prior to full resolution (HPM-MVS
+// section 3.3; specification section 8, with its corrections: planes are
+// evaluated at the pixel, so slanted surfaces stay exact; missing taps are
+// skipped; the guide is read where the tap lies).
 #pragma once
-
-#include <vector>
 
 #include "src/image/gray_image.h"
 #include "src/prior/planar_prior.h"
+
+#include <vector>
 
 namespace hpm {
 
