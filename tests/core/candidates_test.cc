@@ -1,0 +1,179 @@
+#include "src/core/candidates.h"
+
+#include "src/core/sampling_pattern.h"
+#include "tests/core/fake_cost.h"
+
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace hpm {
+namespace {
+
+bool Extends(const std::vector<float>& costs, int iteration, int extension) {
+  return MustExtend(
+      costs.data(), static_cast<int>(costs.size()), iteration, extension);
+}
+
+// Specification 5.3: tau = 0.8 exp(-iteration^2 (3 - extension) / 90).
+TEST(MustExtend, ThresholdTightensWithIterationsAndLoosensWithExtensions) {
+  const float expected[3][3] = {{0.8f, 0.8f, 0.8f},
+                                {0.7738f, 0.7824f, 0.7912f},
+                                {0.7001f, 0.7319f, 0.7652f}};
+  for (int t = 0; t < 3; ++t) {
+    for (int e = 0; e < 3; ++e) {
+      EXPECT_FALSE(Extends({1.0f, expected[t][e] - 1e-3f}, t, e));
+      EXPECT_TRUE(Extends({1.0f, expected[t][e] + 1e-3f}, t, e));
+    }
+  }
+}
+
+TEST(MustExtend, OneConvincedViewIsEnough) {
+  EXPECT_FALSE(Extends({0.1f, 1.0f, 1.0f, 1.0f}, 0, 0));
+  EXPECT_TRUE(Extends({1.0f, 1.0f, 1.0f, 1.0f}, 0, 0));
+}
+
+TEST(MustExtend, MoreThanTwoBadViewsAreTooMany) {
+  EXPECT_FALSE(Extends({0.1f, 0.1f, 1.3f, 1.3f}, 0, 0));
+  EXPECT_TRUE(Extends({0.1f, 1.3f, 1.3f, 1.3f}, 0, 0));
+  EXPECT_FALSE(Extends({0.1f, 1.2f, 1.2f, 1.2f}, 0, 0));
+}
+
+constexpr int kSide = 201;
+constexpr int kMiddle = 100;
+
+// A field of pixels whose planes carry their index as distance.
+class CollectCandidatesTest : public testing::Test {
+ protected:
+  CollectCandidatesTest() : planes_(kSide * kSide), costs_(kSide * kSide, 1) {
+    for (int i = 0; i < kSide * kSide; ++i) {
+      planes_[i] = {{0, 0, -1}, static_cast<float>(i)};
+    }
+    params_.num_views = 2;
+  }
+
+  static int Index(int col, int row) { return row * kSide + col; }
+
+  Candidates Collect(bool extensible,
+                     const FakeCost& cost,
+                     int col = kMiddle,
+                     int row = kMiddle) {
+    const PixelState state = {
+        kSide, kSide, planes_.data(), costs_.data(), nullptr, nullptr};
+    Candidates candidates;
+    CollectCandidates(params_,
+                      MakeSamplingPattern(true, extensible),
+                      state,
+                      cost,
+                      0,
+                      col,
+                      row,
+                      &candidates);
+    return candidates;
+  }
+
+  bool Proposes(const Candidates& candidates, int col, int row) const {
+    for (int i = 0; i < kNumRegions; ++i) {
+      if ((candidates.exists >> i & 1) &&
+          candidates.plane[i].distance == static_cast<float>(Index(col, row))) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  VisitParams params_ = {};
+  std::vector<Plane> planes_;
+  std::vector<float> costs_;
+  const FakeCost convincing_ = {[](const Plane&, int) { return 0.1f; }};
+  const FakeCost doubtful_ = {[](const Plane&, int) { return 1.0f; }};
+};
+
+// Also to the right, where the public code takes the worst (specification 13,
+// number 3).
+TEST_F(CollectCandidatesTest, TakesTheSmallestStoredCostOfEachRegion) {
+  const int best[8][2] = {
+      {0, -9}, {0, 11}, {-7, 0}, {13, 0}, {-9, -8}, {8, -9}, {13, 12}, {-6, 5}};
+  for (const auto& [dcol, drow] : best) {
+    costs_[Index(kMiddle + dcol, kMiddle + drow)] = 0.2f;
+  }
+  const Candidates candidates = Collect(false, convincing_);
+  EXPECT_EQ(candidates.exists, 0xFFu);
+  for (const auto& [dcol, drow] : best) {
+    EXPECT_TRUE(Proposes(candidates, kMiddle + dcol, kMiddle + drow))
+        << dcol << ", " << drow;
+  }
+}
+
+TEST_F(CollectCandidatesTest, MatrixHoldsTheCostOfEachCandidateInEachView) {
+  const FakeCost cost = {[](const Plane& plane, int view) {
+    return std::fmod(plane.distance, 97.0f) / 100 +
+           static_cast<float>(view) / 200;
+  }};
+  const Candidates candidates = Collect(false, cost);
+  for (int i = 0; i < kNumRegions; ++i) {
+    for (int j = 0; j < 2; ++j) {
+      EXPECT_EQ(candidates.matrix[i * 2 + j],
+                cost.photometric(candidates.plane[i], j));
+    }
+  }
+}
+
+TEST_F(CollectCandidatesTest, RegionsOutsideTheImageDoNotExist) {
+  // At the corner only those to the right, below, and right-below are inside.
+  const Candidates corner = Collect(true, convincing_, 0, 0);
+  EXPECT_EQ(__builtin_popcount(corner.exists), 3);
+  EXPECT_TRUE(Proposes(corner, 5, 0));
+  EXPECT_TRUE(Proposes(corner, 0, 5));
+  EXPECT_TRUE(Proposes(corner, 5, 6));
+}
+
+TEST_F(CollectCandidatesTest, ConvincingRegionsDoNotGrow) {
+  costs_[Index(kMiddle, kMiddle - 15)] = 0.01f;
+  EXPECT_FALSE(Proposes(Collect(true, convincing_), kMiddle, kMiddle - 15));
+  EXPECT_EQ(convincing_.num_evaluations, 8 * 2);
+}
+
+// All eight regions, not only the first (specification 13, number 1).
+TEST_F(CollectCandidatesTest, EveryDoubtfulRegionGrowsThreeTimes) {
+  const int furthest[8][2] = {{0, -83},
+                              {0, 83},
+                              {-83, 0},
+                              {83, 0},
+                              {-69, -68},
+                              {68, -69},
+                              {69, 68},
+                              {-68, 69}};
+  for (const auto& [dcol, drow] : furthest) {
+    costs_[Index(kMiddle + dcol, kMiddle + drow)] = 0.01f;
+  }
+  const Candidates grown = Collect(true, doubtful_);
+  const Candidates fixed = Collect(false, doubtful_);
+  for (const auto& [dcol, drow] : furthest) {
+    EXPECT_TRUE(Proposes(grown, kMiddle + dcol, kMiddle + drow))
+        << dcol << ", " << drow;
+    EXPECT_FALSE(Proposes(fixed, kMiddle + dcol, kMiddle + drow));
+  }
+}
+
+TEST_F(CollectCandidatesTest, GrowthStopsAtTheFirstConvincingSample) {
+  costs_[Index(kMiddle, kMiddle - 15)] = 0.5f;   // reached by doubling once
+  costs_[Index(kMiddle, kMiddle - 25)] = 0.01f;  // by doubling twice
+  const float near_one = planes_[Index(kMiddle, kMiddle - 15)].distance;
+  const FakeCost cost = {[=](const Plane& plane, int) {
+    return plane.distance == near_one ? 0.1f : 1.0f;
+  }};
+  const Candidates candidates = Collect(true, cost);
+  EXPECT_TRUE(Proposes(candidates, kMiddle, kMiddle - 15));
+  EXPECT_FALSE(Proposes(candidates, kMiddle, kMiddle - 25));
+}
+
+TEST_F(CollectCandidatesTest, AWorseSampleFurtherOutReplacesNothing) {
+  costs_[Index(kMiddle, kMiddle - 7)] = 0.5f;
+  costs_[Index(kMiddle, kMiddle - 17)] = 0.6f;
+  EXPECT_TRUE(Proposes(Collect(true, doubtful_), kMiddle, kMiddle - 7));
+}
+
+}  // namespace
+}  // namespace hpm

@@ -1,0 +1,33 @@
+// Cost objects for tests of the decisions: any function of plane and view.
+#pragma once
+
+#include "src/core/visit.h"
+
+#include <functional>
+
+namespace hpm {
+
+struct FakeCost {
+  std::function<float(const Plane&, int view)> photometric;
+  std::function<float(const Plane&, int view)> geometric =
+      [](const Plane&, int) { return 0.0f; };
+  mutable int num_evaluations = 0;
+
+  void Photometric(const Plane* planes,
+                   int num_planes,
+                   const uint8_t* views,
+                   int num_views,
+                   float* costs) const {
+    for (int i = 0; i < num_planes; ++i) {
+      for (int k = 0; k < num_views; ++k) {
+        costs[i * num_views + k] = photometric(planes[i], views[k]);
+      }
+    }
+    num_evaluations += num_planes * num_views;
+  }
+  float GeometricError(const Plane& plane, int view) const {
+    return geometric(plane, view);
+  }
+};
+
+}  // namespace hpm

@@ -1,0 +1,125 @@
+#include "src/core/initialize_pixel.h"
+
+#include "tests/core/fake_cost.h"
+#include "tests/core/test_cameras.h"
+
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace hpm {
+namespace {
+
+float BestOf(const std::vector<float>& costs, uint32_t* mask) {
+  return BestViewsCost(costs.data(), static_cast<int>(costs.size()), mask);
+}
+
+TEST(BestViewsCost, IsTheMeanOfTheFourSmallest) {
+  uint32_t mask;
+  EXPECT_FLOAT_EQ(BestOf({0.9f, 0.1f, 0.8f, 0.3f, 0.2f, 0.7f}, &mask),
+                  (0.1f + 0.2f + 0.3f + 0.7f) / 4);
+  EXPECT_EQ(mask, 0b111010u);
+}
+
+TEST(BestViewsCost, SkipsViewsThatSeeNothing) {
+  uint32_t mask;
+  EXPECT_FLOAT_EQ(BestOf({2.0f, 0.4f, 2.0f, 0.2f}, &mask), 0.3f);
+  EXPECT_EQ(mask, 0b1010u);
+}
+
+TEST(BestViewsCost, IsTheWorstIfNoViewSeesAnything) {
+  uint32_t mask = 77;
+  EXPECT_EQ(BestOf({2.0f, 2.0f}, &mask), kMaxCost);
+  EXPECT_EQ(mask, 0u);
+}
+
+class InitializePixelTest : public testing::Test {
+ protected:
+  InitializePixelTest() {
+    params_.ref = MakeTestCamera(9, 9, 10, 0, {0, 0, 0});
+    params_.num_views = 2;
+    params_.depth_min = 2;
+    params_.depth_max = 6;
+  }
+
+  // Plane of pixel (4, 3) after starting there.
+  Plane Start(StartFrom start, int draw = 0) {
+    std::vector<Plane> planes(81, Plane{{0, 0, 0}, 0});
+    std::vector<float> costs(81, kMaxCost);
+    std::vector<uint32_t> masks(81, 0);
+    std::vector<Plane> priors(81, Plane{{0, 0, 0}, 0});
+    planes[31] = stored_;
+    costs[31] = stored_cost_;
+    priors[31] = prior_;
+    const FakeCost cost = {[](const Plane&, int) { return 0.3f; }};
+    Rng rng(1, draw, 0);
+    InitializePixel(
+        params_,
+        {9, 9, planes.data(), costs.data(), masks.data(), priors.data()},
+        start,
+        cost,
+        &rng,
+        4,
+        3);
+    EXPECT_FLOAT_EQ(costs[31], 0.3f);
+    EXPECT_EQ(masks[31], 3u);
+    return planes[31];
+  }
+
+  float Depth(const Plane& plane) const {
+    return DepthAt(params_.ref, plane, 4, 3);
+  }
+
+  VisitParams params_ = {};
+  Plane stored_ = {{0, 0, -1}, 3};
+  float stored_cost_ = 0.5f;
+  Plane prior_ = {{0, 0, -1}, 5};
+};
+
+TEST_F(InitializePixelTest, RandomStartLiesInTheDepthRangeAndFacesTheCamera) {
+  float lowest = 100, highest = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const Plane plane = Start(StartFrom::kRandom, i);
+    ASSERT_GE(Depth(plane), 2 * (1 - 1e-4));
+    ASSERT_LE(Depth(plane), 6 * (1 + 1e-4));
+    ASSERT_LE(Dot(plane.normal, RayAt(params_.ref, 4, 3)), 0);
+    lowest = std::fmin(lowest, Depth(plane));
+    highest = std::fmax(highest, Depth(plane));
+  }
+  EXPECT_LT(lowest, 2.1);
+  EXPECT_GT(highest, 5.9);
+}
+
+TEST_F(InitializePixelTest, CurrentStartKeepsTheStoredPlane) {
+  const Plane plane = Start(StartFrom::kCurrent);
+  EXPECT_EQ(plane.distance, stored_.distance);
+  EXPECT_EQ(plane.normal.z, stored_.normal.z);
+}
+
+TEST_F(InitializePixelTest, CurrentStartWithoutAPlaneIsRandom) {
+  stored_ = {{0, 0, 0}, 0};
+  EXPECT_GT(Start(StartFrom::kCurrent).distance, 0);
+}
+
+TEST_F(InitializePixelTest, PriorStartTakesThePriorSlightlyPerturbed) {
+  for (int i = 0; i < 300; ++i) {
+    const Plane plane = Start(StartFrom::kPrior, i);
+    EXPECT_NEAR(Depth(plane), 5, 5 * 0.0601);
+    EXPECT_LT(AngleBetween(plane.normal, prior_.normal),
+              1.05 * std::sqrt(3.0) * kPriorNormalSpread);
+  }
+}
+
+TEST_F(InitializePixelTest, PriorStartKeepsConvincingHypotheses) {
+  stored_cost_ = 0.09f;
+  EXPECT_EQ(Depth(Start(StartFrom::kPrior)), Depth(stored_));
+}
+
+TEST_F(InitializePixelTest, PriorStartWithoutAPriorKeepsTheStoredPlane) {
+  prior_.distance = 0;
+  EXPECT_EQ(Depth(Start(StartFrom::kPrior)), Depth(stored_));
+}
+
+}  // namespace
+}  // namespace hpm

@@ -1,0 +1,66 @@
+#include "src/core/prior_term.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace hpm {
+namespace {
+
+const PriorTerm kTerm = {0.5f, 0.18f, 0.1f, 0.0872665f};
+const Vec3f kNormal = {0, 0, -1};
+
+Vec3f TurnedBy(float angle) { return {std::sin(angle), 0, -std::cos(angle)}; }
+
+// Specification 7.6, as a product.
+double Posterior(double cost, double dz, double angle) {
+  return std::exp(-cost * cost / 0.18) *
+         (0.5 + std::exp(-dz * dz / (2 * 0.01)) *
+                    std::exp(-angle * angle / (2 * 0.0872665 * 0.0872665)));
+}
+
+TEST(LogPosterior, IsTheLogarithmOfTheSpecifiedProduct) {
+  for (const float cost : {0.0f, 0.1f, 0.7f}) {
+    for (const float dz : {0.0f, 0.05f, -0.2f}) {
+      for (const float angle : {0.0f, 0.05f, 0.2f}) {
+        EXPECT_NEAR(
+            LogPosterior(kTerm, cost, 3 + dz, TurnedBy(angle), 3, kNormal),
+            std::log(Posterior(cost, dz, angle)),
+            2e-4);
+      }
+    }
+  }
+}
+
+TEST(LogPosterior, IsLargestOnThePrior) {
+  const float best = LogPosterior(kTerm, 0.3f, 3, kNormal, 3, kNormal);
+  EXPECT_GT(best, LogPosterior(kTerm, 0.3f, 3.02f, kNormal, 3, kNormal));
+  EXPECT_GT(best, LogPosterior(kTerm, 0.3f, 2.98f, kNormal, 3, kNormal));
+  EXPECT_GT(best, LogPosterior(kTerm, 0.3f, 3, TurnedBy(0.02f), 3, kNormal));
+}
+
+TEST(LogPosterior, FallsWithTheCostEvenWhereTheProductWouldUnderflow) {
+  float before = LogPosterior(kTerm, 0, 3, kNormal, 3, kNormal);
+  for (float cost = 0.1f; cost < 6; cost += 0.1f) {
+    const float here = LogPosterior(kTerm, cost, 3, kNormal, 3, kNormal);
+    EXPECT_LT(here, before);
+    before = here;
+  }
+}
+
+// The prior can make up for a limited difference in cost only.
+TEST(LogPosterior, PriorChangesTheProbabilityByAFactorOfThreeAtMost) {
+  const float on = LogPosterior(kTerm, 0.2f, 3, kNormal, 3, kNormal);
+  const float off = LogPosterior(kTerm, 0.2f, 30, TurnedBy(1.5f), 3, kNormal);
+  EXPECT_NEAR(on - off, std::log(3.0f), 1e-5);
+}
+
+TEST(AngleBetween, SurvivesDotProductsBeyondOne) {
+  const Vec3f longer = {0, 0, -1.0000002f};
+  EXPECT_EQ(AngleBetween(longer, longer), 0);
+  EXPECT_FALSE(std::isnan(AngleBetween(longer, -longer)));
+  EXPECT_NEAR(AngleBetween(kNormal, TurnedBy(0.3f)), 0.3f, 1e-5);
+}
+
+}  // namespace
+}  // namespace hpm
