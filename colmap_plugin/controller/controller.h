@@ -40,6 +40,12 @@ struct RunSummary {
   std::string cpu_target;
 };
 
+class InputCache;
+class RunStatistics;
+class StagePlan;
+class StageRunner;
+struct StereoProblem;
+
 class PatchMatchController {
  public:
   // Throws Error(kUsage) for option values out of range.
@@ -54,6 +60,13 @@ class PatchMatchController {
   RunSummary Run();
 
  private:
+  void RunStages(const Workspace& workspace,
+                 const std::vector<StereoProblem>& problems,
+                 const StagePlan& plan,
+                 InputCache* inputs,
+                 StageRunner* runner,
+                 RunStatistics* statistics);
+
   ControllerOptions options_;
   LogSink log_;
   ProgressSink progress_;

@@ -3,6 +3,7 @@
 #include "colmap_plugin/controller/ray_convention.h"
 #include "src/base/error.h"
 #include "src/image/load_image.h"
+#include "src/image/shrink_image.h"
 
 #include <utility>
 
@@ -11,6 +12,8 @@ namespace {
 
 // A depth map takes four times the bytes of an image.
 constexpr uint64_t kImageShare = 5;
+
+constexpr int kMaxLevels = 32;
 
 }  // namespace
 
@@ -22,14 +25,17 @@ InputCache::InputCache(const Workspace& workspace,
       images_(max_bytes / kImageShare),
       depths_(max_bytes - max_bytes / kImageShare) {}
 
-std::shared_ptr<const GrayImage> InputCache::Image(int image) {
+std::shared_ptr<const GrayImage> InputCache::Image(int image, int level) {
   if (unreadable_.count(image) > 0) return nullptr;
-  if (auto cached = images_.Find(image)) return cached;
+  const int64_t key = static_cast<int64_t>(image) * kMaxLevels + level;
+  if (auto cached = images_.Find(key)) return cached;
   try {
     const Camera& camera = workspace_.camera(image);
-    auto loaded = std::make_shared<const GrayImage>(LoadGrayImage(
-        workspace_.ImagePath(image), camera.width, camera.height));
-    images_.Insert(image, loaded, loaded->data.size());
+    GrayImage full =
+        LoadGrayImage(workspace_.ImagePath(image), camera.width, camera.height);
+    auto loaded = std::make_shared<const GrayImage>(
+        level == 0 ? std::move(full) : ShrinkImage(full, level));
+    images_.Insert(key, loaded, loaded->data.size());
     return loaded;
   } catch (const Error& error) {
     log_(LogLevel::kWarning, error.what());
@@ -39,19 +45,11 @@ std::shared_ptr<const GrayImage> InputCache::Image(int image) {
 }
 
 std::shared_ptr<const std::vector<float>> InputCache::InverseDepth(
-    int image, const StageFiles& files) {
+    int image, const Camera& camera, const StageFiles& files) {
   if (auto cached = depths_.Find(image)) return cached;
   try {
-    const Camera& camera = workspace_.camera(image);
-    const Map depth = ReadMap(files.depth);
-    const Map normal = ReadMap(files.normal);
-    if (depth.width != camera.width || depth.height != camera.height ||
-        depth.channels != 1 || normal.width != camera.width ||
-        normal.height != camera.height || normal.channels != 3) {
-      return nullptr;
-    }
-    auto inverse = std::make_shared<const std::vector<float>>(
-        InverseDepths(FromColmapMaps(depth, normal, camera), camera));
+    auto inverse = std::make_shared<const std::vector<float>>(InverseDepths(
+        ReadHypotheses(files.depth, files.normal, camera), camera));
     depths_.Insert(image, inverse, inverse->size() * sizeof(float));
     return inverse;
   } catch (const Error&) {

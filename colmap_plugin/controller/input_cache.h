@@ -18,13 +18,14 @@ class InputCache {
  public:
   InputCache(const Workspace& workspace, uint64_t max_bytes, LogSink log);
 
-  // At the size of the camera; null if the file cannot be read.
-  std::shared_ptr<const GrayImage> Image(int image);
+  // At the size of the camera, halved `level` times; null if the file cannot be
+  // read.
+  std::shared_ptr<const GrayImage> Image(int image, int level);
 
   // 1/z at pixel centres of an image's maps; null if they are absent or
   // damaged.
   std::shared_ptr<const std::vector<float>> InverseDepth(
-      int image, const StageFiles& files);
+      int image, const Camera& camera, const StageFiles& files);
 
   // Depth maps belong to one stage: forget those of the stage before.
   void ForgetDepths() { depths_.Clear(); }
@@ -35,7 +36,7 @@ class InputCache {
  private:
   const Workspace& workspace_;
   LogSink log_;
-  LruCache<int, GrayImage> images_;
+  LruCache<int64_t, GrayImage> images_;  // by image and level
   LruCache<int, std::vector<float>> depths_;
   std::set<int> unreadable_;
 };

@@ -18,11 +18,12 @@ MethodParams MakeMethodParams(const ControllerOptions& options) {
 }
 
 ScheduleOptions MakeScheduleOptions(const ControllerOptions& options) {
-  return {options.hpm.method,
-          options.hpm.num_iterations,
-          options.hpm.num_geom_iterations,
-          options.hpm.num_geom_passes,
-          options.hpm.num_levels};
+  return {
+      options.hpm.method,
+      options.hpm.num_iterations,
+      options.hpm.num_geom_iterations,
+      options.patch_match.geom_consistency ? options.hpm.num_geom_passes : 0,
+      options.hpm.num_levels};
 }
 
 FilterParams MakeFilterParams(const PatchMatchStereoOptions& options,

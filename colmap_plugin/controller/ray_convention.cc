@@ -1,5 +1,7 @@
 #include "colmap_plugin/controller/ray_convention.h"
 
+#include "src/base/error.h"
+
 #include <cmath>
 
 namespace hpm {
@@ -58,6 +60,24 @@ HypothesisMap FromColmapMaps(const Map& depth,
     }
   }
   return map;
+}
+
+HypothesisMap ReadHypotheses(const std::filesystem::path& depth_path,
+                             const std::filesystem::path& normal_path,
+                             const Camera& camera) {
+  const auto read = [&](const std::filesystem::path& path, int channels) {
+    Map map = ReadMap(path);
+    if (map.width != camera.width || map.height != camera.height ||
+        map.channels != channels) {
+      throw Error(ErrorCode::kBadInput,
+                  path.string() +
+                      ": not the size of its image; delete it and run again");
+    }
+    return map;
+  };
+  const Map depth = read(depth_path, 1);
+  const Map normal = read(normal_path, 3);
+  return FromColmapMaps(depth, normal, camera);
 }
 
 std::vector<float> InverseDepths(const HypothesisMap& map,

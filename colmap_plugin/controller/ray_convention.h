@@ -9,6 +9,7 @@
 #include "colmap_plugin/formats/map_file.h"
 #include "src/image/hypothesis_map.h"
 
+#include <filesystem>
 #include <vector>
 
 namespace hpm {
@@ -28,6 +29,12 @@ DepthAndNormal ToColmapMaps(const HypothesisMap& map,
 // maps must have the camera's size.
 HypothesisMap FromColmapMaps(const Map& depth,
                              const Map& normal,
+                             const Camera& camera);
+
+// Reads both files; throws Error(kBadInput) naming the one that is damaged or
+// not of the camera's size.
+HypothesisMap ReadHypotheses(const std::filesystem::path& depth_path,
+                             const std::filesystem::path& normal_path,
                              const Camera& camera);
 
 // 1/z at the pixel centres, 0 = none.

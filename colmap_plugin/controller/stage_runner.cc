@@ -8,6 +8,7 @@
 #include "colmap_plugin/workspace/stamp.h"
 #include "src/base/error.h"
 #include "src/engine/phase_timer.h"
+#include "src/prior/upsample_prior.h"
 
 #include <algorithm>
 
@@ -29,6 +30,7 @@ nlohmann::json ToJson(const StageResult& result) {
 
 StageRunner::StageRunner(const Workspace& workspace,
                          const std::vector<StereoProblem>& problems,
+                         const Schedule& schedule,
                          const ControllerOptions& options,
                          const StagePlan& plan,
                          InputCache* inputs,
@@ -36,6 +38,7 @@ StageRunner::StageRunner(const Workspace& workspace,
                          const LogSink& log)
     : workspace_(workspace),
       problems_(problems),
+      schedule_(schedule),
       options_(options),
       plan_(plan),
       inputs_(inputs),
@@ -52,28 +55,19 @@ StageResult StageRunner::Run(int stage,
     PhaseTimer timer(&result.seconds, "read");
     views = MakeViews(stage, problem);
   }
-  const Schedule schedule = MakeSchedule(MakeScheduleOptions(options_),
-                                         views.ref.camera.width,
-                                         views.ref.camera.height);
   HypothesisMap map;
-  const int geometric_pass = plan_.stages()[stage].geometric_pass;
-  if (geometric_pass < 0) {
-    map = EstimatePhotometric(
-        backend_, views, schedule, params_, control, &result.seconds);
-  } else {
-    {
-      PhaseTimer timer(&result.seconds, "read");
-      map = ReadPrevious(stage, problem);
-    }
-    RefineGeometric(backend_,
-                    views,
-                    schedule,
-                    schedule.geometric[geometric_pass],
-                    params_,
-                    control,
-                    &map,
-                    &result.seconds);
+  {
+    PhaseTimer timer(&result.seconds, "read");
+    map = StartMap(stage, problem, views);
   }
+  RunStage(backend_,
+           views,
+           schedule_,
+           plan_.stages()[stage].spec,
+           params_,
+           control,
+           &map,
+           &result.seconds);
   Publish(stage, problem, map, views, control, &result);
   return result;
 }
@@ -82,8 +76,10 @@ ViewSet StageRunner::MakeViews(int stage, int problem) {
   const StereoProblem& p = problems_[problem];
   const std::string& name = workspace_.ImageName(p.ref_image);
   ViewSet views;
-  views.ref = {
-      workspace_.camera(p.ref_image), inputs_->Image(p.ref_image), nullptr};
+  const int level = plan_.stages()[stage].spec.level;
+  views.ref = {plan_.CameraOf(stage, p.ref_image),
+               inputs_->Image(p.ref_image, level),
+               nullptr};
   if (views.ref.image == nullptr) {
     throw Error(ErrorCode::kBadInput,
                 workspace_.ImagePath(p.ref_image).string() +
@@ -96,11 +92,12 @@ ViewSet StageRunner::MakeViews(int stage, int problem) {
                                  static_cast<uint64_t>(p.ref_image));
   src_images_.clear();
   for (const int src : p.src_images) {
-    View view = {workspace_.camera(src), inputs_->Image(src), nullptr};
+    View view = {
+        plan_.CameraOf(stage, src), inputs_->Image(src, level), nullptr};
     if (view.image == nullptr) continue;
-    if (stage > 0) {
+    if (plan_.stages()[stage].spec.geometric) {
       view.inverse_depth =
-          inputs_->InverseDepth(src, plan_.Files(stage - 1, src));
+          inputs_->InverseDepth(src, view.camera, plan_.Files(stage - 1, src));
       if (view.inverse_depth == nullptr) {
         log_(LogLevel::kWarning,
              name + ": source " + workspace_.ImageName(src) + " has no " +
@@ -120,21 +117,26 @@ ViewSet StageRunner::MakeViews(int stage, int problem) {
   return views;
 }
 
-HypothesisMap StageRunner::ReadPrevious(int stage, int problem) const {
+HypothesisMap StageRunner::StartMap(int stage,
+                                    int problem,
+                                    const ViewSet& views) const {
+  const Camera& camera = views.ref.camera;
+  const StageSpec& spec = plan_.stages()[stage].spec;
+  if (!spec.geometric && !spec.from_coarser) {
+    return HypothesisMap(camera.width, camera.height);
+  }
   const int image = problems_[problem].ref_image;
   const StageFiles files = plan_.Files(stage - 1, image);
-  const Camera& camera = workspace_.camera(image);
-  const Map depth = ReadMap(files.depth);
-  const Map normal = ReadMap(files.normal);
-  for (const Map* map : {&depth, &normal}) {
-    if (map->width != camera.width || map->height != camera.height ||
-        map->channels != (map == &depth ? 1 : 3)) {
-      throw Error(ErrorCode::kBadInput,
-                  (map == &depth ? files.depth : files.normal).string() +
-                      ": not the size of its image; delete it and run again");
-    }
-  }
-  return FromColmapMaps(depth, normal, camera);
+  HypothesisMap previous = ReadHypotheses(
+      files.depth, files.normal, plan_.CameraOf(stage - 1, image));
+  if (spec.geometric) return previous;
+  HypothesisMap map(camera.width, camera.height);
+  map.planes = UpsamplePrior(previous.planes,
+                             1,
+                             camera,
+                             *views.ref.image,
+                             {views.depth_min, views.depth_max});
+  return map;
 }
 
 void StageRunner::Publish(int stage,
@@ -152,8 +154,8 @@ void StageRunner::Publish(int stage,
     PhaseTimer timer(&result->seconds, "filter");
     const FilterParams params = MakeFilterParams(
         options_.patch_match, static_cast<int>(views.srcs.size()));
-    consistent = backend_->ConsistentViews(
-        map, params, info.geometric_pass >= 0, control);
+    consistent =
+        backend_->ConsistentViews(map, params, info.spec.geometric, control);
     keep.resize(consistent.size());
     for (size_t i = 0; i < keep.size(); ++i) {
       keep[i] = __builtin_popcount(consistent[i]) >= params.min_num_consistent;
@@ -171,7 +173,7 @@ void StageRunner::Publish(int stage,
                 maps.depth.data.begin(), maps.depth.data.end(), 0.0f)) /
                 static_cast<double>(maps.depth.data.size());
   const std::string& name = workspace_.ImageName(image);
-  if (info.geometric_pass < 0 || info.is_final) {
+  if (info.is_public) {
     log_(LogLevel::kInfo, "Writing " + info.name + " output for " + name);
   }
   const StageFiles files = plan_.Files(stage, image);

@@ -24,6 +24,7 @@ class StageRunner {
   // Keeps references to all arguments.
   StageRunner(const Workspace& workspace,
               const std::vector<StereoProblem>& problems,
+              const Schedule& schedule,
               const ControllerOptions& options,
               const StagePlan& plan,
               InputCache* inputs,
@@ -36,7 +37,9 @@ class StageRunner {
 
  private:
   ViewSet MakeViews(int stage, int problem);
-  HypothesisMap ReadPrevious(int stage, int problem) const;
+  // The hypotheses the stage starts from: none, those of the stage before, or
+  // those of the coarser level upsampled.
+  HypothesisMap StartMap(int stage, int problem, const ViewSet& views) const;
   void Publish(int stage,
                int problem,
                const HypothesisMap& map,
@@ -46,6 +49,7 @@ class StageRunner {
 
   const Workspace& workspace_;
   const std::vector<StereoProblem>& problems_;
+  const Schedule& schedule_;
   const ControllerOptions& options_;
   const StagePlan& plan_;
   InputCache* inputs_;

@@ -16,18 +16,28 @@ namespace {
 // Raise when the same options give other maps.
 constexpr int kAlgorithmVersion = 1;
 
-std::vector<Stage> MakeStages(bool geom_consistency, int num_passes) {
-  std::vector<Stage> stages = {{"photometric", -1, false}};
-  if (geom_consistency) {
-    for (int i = 0; i < num_passes; ++i) {
-      const bool last = i + 1 == num_passes;
-      stages.push_back(
-          {last ? "geometric" : "geometric_" + std::to_string(i + 1),
-           i,
-           false});
+std::vector<Stage> MakeStages(const Schedule& schedule) {
+  std::vector<Stage> stages;
+  int num_geometric = 0;
+  for (const StageSpec& spec : schedule.stages) {
+    Stage stage;
+    stage.spec = spec;
+    if (spec.level > 0) {
+      stage.name = "level_" + std::to_string(spec.level) + "_";
     }
+    if (spec.geometric) {
+      stage.name += "geometric_" + std::to_string(++num_geometric);
+    } else {
+      num_geometric = 0;
+      stage.name += "photometric";
+      stage.is_public = spec.level == 0;
+    }
+    stages.push_back(stage);
   }
-  stages.back().is_final = true;
+  Stage& last = stages.back();
+  last.is_public = true;
+  last.is_final = true;
+  if (last.spec.geometric) last.name = "geometric";
   return stages;
 }
 
@@ -83,10 +93,11 @@ std::string OwnFingerprint(const Workspace& workspace,
   const MethodParams params = MakeMethodParams(options);
   AddMethod(params, &hash);
   hash.AddString(options.hpm.method);
-  if (stage.geometric_pass < 0) {
-    hash.AddInt(options.hpm.num_iterations).AddInt(options.hpm.num_levels);
-  } else {
-    hash.AddInt(options.hpm.num_geom_iterations);
+  for (const Pass& pass : stage.spec.passes) {
+    hash.AddInt(static_cast<int>(pass.kind)).AddInt(pass.num_iterations);
+    hash.AddInt(pass.id).AddInt(pass.level);
+  }
+  if (stage.spec.geometric) {
     hash.AddDouble(params.geom_weight).AddDouble(params.geom_max_error);
   }
   if (stage.is_final) AddFilter(options.patch_match, &hash);
@@ -97,12 +108,12 @@ std::string OwnFingerprint(const Workspace& workspace,
 
 StagePlan::StagePlan(const Workspace& workspace,
                      const std::vector<StereoProblem>& problems,
+                     const Schedule& schedule,
                      const ControllerOptions& options)
     : workspace_(workspace),
       problems_(problems),
       options_(options),
-      stages_(MakeStages(options.patch_match.geom_consistency,
-                         options.hpm.num_geom_passes)) {
+      stages_(MakeStages(schedule)) {
   const int num_stages = static_cast<int>(stages_.size());
   const int num_problems = static_cast<int>(problems.size());
   std::vector<int> problem_of_image(workspace.num_images(), -1);
@@ -118,6 +129,7 @@ StagePlan::StagePlan(const Workspace& workspace,
       if (s > 0) {
         hash.AddString(fingerprints_[s - 1][p]);
         for (const int src : problems[p].src_images) {
+          if (!stages_[s].spec.geometric) break;
           const int q = problem_of_image[src];
           hash.AddString(q < 0 ? "" : fingerprints_[s - 1][q]);
         }
@@ -130,11 +142,12 @@ StagePlan::StagePlan(const Workspace& workspace,
   // passes only if the pass after them still has to read them.
   needed_.assign(num_stages, std::vector<bool>(num_problems, false));
   for (int s = num_stages - 1; s >= 0; --s) {
-    const bool visible = s == 0 || stages_[s].is_final;
+    const bool visible = stages_[s].is_public;
     std::vector<bool> wanted(num_problems, visible);
     for (int q = 0; q < num_problems && !visible; ++q) {
       if (!needed_[s + 1][q]) continue;
       wanted[q] = true;
+      if (!stages_[s + 1].spec.geometric) continue;
       for (const int src : problems[q].src_images) {
         if (problem_of_image[src] >= 0) wanted[problem_of_image[src]] = true;
       }
@@ -152,7 +165,7 @@ int StagePlan::CountNeeded(int s) const {
 
 StageFiles StagePlan::Files(int s, int image) const {
   const Stage& stage = stages_[s];
-  if (s == 0 || stage.is_final) {
+  if (stage.is_public) {
     return {workspace_.MapPath(image, MapKind::kDepth, stage.name),
             workspace_.MapPath(image, MapKind::kNormal, stage.name),
             workspace_.MapPath(image, MapKind::kConsistencyGraph, stage.name)};
@@ -163,8 +176,7 @@ StageFiles StagePlan::Files(int s, int image) const {
 }
 
 bool StagePlan::WritesGraph(int s) const {
-  return options_.patch_match.write_consistency_graph &&
-         (s == 0 || stages_[s].is_final);
+  return options_.patch_match.write_consistency_graph && stages_[s].is_public;
 }
 
 bool StagePlan::IsFinished(int s, int p) {
@@ -181,7 +193,7 @@ bool StagePlan::IsFinished(int s, int p) {
     replaces_foreign_maps_ = true;
     return false;
   }
-  const Camera& camera = workspace_.camera(image);
+  const Camera camera = CameraOf(s, image);
   const auto fits = [&](const MapHeader& header, int channels) {
     return header.width == camera.width && header.height == camera.height &&
            header.channels == channels;

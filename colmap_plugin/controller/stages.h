@@ -5,6 +5,7 @@
 
 #include "colmap_plugin/controller/options.h"
 #include "colmap_plugin/workspace/problem.h"
+#include "src/engine/schedule.h"
 
 #include <filesystem>
 #include <string>
@@ -13,10 +14,12 @@
 namespace hpm {
 
 struct Stage {
-  std::string name;  // "photometric", "geometric_1", ..., "geometric"
-  int geometric_pass =
-      -1;  // number of the geometric pass, from 0; -1: photometric
-  bool is_final = false;  // filtered, if asked for; its maps are the result
+  // "photometric", "geometric_1", ..., "geometric"; at reduced scale
+  // "level_2_photometric" and so on.
+  std::string name;
+  StageSpec spec;
+  bool is_public = false;  // its maps lie where COLMAP looks for them
+  bool is_final = false;   // filtered, if asked for; its maps are the result
 };
 
 struct StageFiles {
@@ -28,6 +31,7 @@ class StagePlan {
   // Looks at the files of the workspace; computes nothing.
   StagePlan(const Workspace& workspace,
             const std::vector<StereoProblem>& problems,
+            const Schedule& schedule,
             const ControllerOptions& options);
 
   const std::vector<Stage>& stages() const { return stages_; }
@@ -41,6 +45,10 @@ class StagePlan {
     return fingerprints_[s][p];
   }
   StageFiles Files(int s, int image) const;
+  // The image's camera at the scale of the stage.
+  Camera CameraOf(int s, int image) const {
+    return LevelCamera(workspace_.camera(image), stages_[s].spec.level);
+  }
   bool WritesGraph(int s) const;
 
  private:

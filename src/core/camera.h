@@ -32,4 +32,20 @@ HPM_HD Vec3f Center(const Camera& camera) {
   return -(Transposed(camera.R) * camera.t);
 }
 
+// Camera of the image halved `level` times. The centre of its pixel x lies at
+// (x + 0.5) * 2^level - 0.5; partial blocks at the right and lower border count
+// as pixels.
+HPM_HD Camera LevelCamera(const Camera& camera, int level) {
+  const int factor = 1 << level;
+  const float scale = 1.0f / static_cast<float>(factor);
+  Camera result = camera;
+  result.width = (camera.width + factor - 1) / factor;
+  result.height = (camera.height + factor - 1) / factor;
+  result.fx *= scale;
+  result.fy *= scale;
+  result.cx = (camera.cx + 0.5f) * scale - 0.5f;
+  result.cy = (camera.cy + 0.5f) * scale - 0.5f;
+  return result;
+}
+
 }  // namespace hpm

@@ -21,22 +21,22 @@ namespace hpm {
 struct VisitParams {
   Camera ref;
   int num_views;
-  float depth_min,
-      depth_max;             // model units; hypotheses outside are not accepted
-  int num_view_draws;        // 15
-  float depth_perturbation;  // relative, 0.02
+  // Model units; hypotheses outside are not accepted.
+  float depth_min, depth_max;
+  int num_view_draws;         // 15
+  float depth_perturbation;   // relative, 0.02
   float normal_perturbation;  // radians per axis, 0.01 pi
   float same_plane_bound;     // pixels; see NearlySame() in candidates.h
-  float parallax;    // pixels in a source view per unit of -1/z, largest of all
-                     // views
+  // Pixels in a source view per unit of -1/z, largest of all views.
+  float parallax;
   int patch_radius;  // pixels
   bool geometric;    // add the geometric term
   GeometricTerm geometric_term;
   PriorTerm prior_term;
 };
 
-constexpr int kNumInitialViews =
-    4;  // k of the best-k mean at initialisation (paper section 3)
+// k of the best-k mean at initialisation (paper section 3).
+constexpr int kNumInitialViews = 4;
 
 // Costs of several planes over the drawn views, weighted; the batch goes
 // through the backend at once.

@@ -30,14 +30,10 @@ class CpuBackend : public Backend {
         "cpu {}, {} threads", target_.name, arena_.max_concurrency());
   }
 
-  uint64_t MemoryNeeded(int width,
-                        int height,
-                        int num_srcs,
-                        bool geometric) const override {
+  uint64_t MemoryNeeded(int width, int height, int num_srcs) const override {
     const uint64_t pixels = static_cast<uint64_t>(width) * height;
     const uint64_t state = sizeof(Plane) * 2 + sizeof(float) + sizeof(uint32_t);
-    return CpuViews::MemoryNeeded(width, height, num_srcs) + pixels * state +
-           (geometric ? pixels * sizeof(float) * num_srcs : 0);
+    return CpuViews::MemoryNeeded(width, height, num_srcs) + pixels * state;
   }
 
   void SetViews(const ViewSet& views, const MethodParams& params) override {
@@ -101,7 +97,7 @@ class CpuBackend : public Backend {
         finish_step();
       }
     }
-    for (int color = 0; color < 2; ++color) {
+    for (int color = 0; pass.median && color < 2; ++color) {
       HalfSweep(state, color, control, [&](int col, int row) {
         MedianFilterPixel(params.ref, state, col, row);
         return uint64_t{0};

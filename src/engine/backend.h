@@ -26,11 +26,9 @@ class Backend {
   // E.g. "cpu avx3, 2 threads"; goes into the log and the run record.
   virtual std::string Name() const = 0;
 
-  // Working memory, in bytes, for one reference of this size beside its images.
-  virtual uint64_t MemoryNeeded(int width,
-                                int height,
-                                int num_srcs,
-                                bool geometric) const = 0;
+  // Working memory, in bytes, for one reference of this size beside the inputs
+  // handed to SetViews.
+  virtual uint64_t MemoryNeeded(int width, int height, int num_srcs) const = 0;
 
   // Takes the images and cameras of a problem; replaces the problem before.
   virtual void SetViews(const ViewSet& views, const MethodParams& params) = 0;

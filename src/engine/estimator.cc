@@ -4,57 +4,84 @@
 #include "src/prior/build_prior.h"
 
 namespace hpm {
+namespace {
 
-HypothesisMap EstimatePhotometric(Backend* backend,
-                                  const ViewSet& views,
-                                  const Schedule& schedule,
-                                  const MethodParams& params,
-                                  const RunControl& control,
-                                  PhaseTimes* times) {
-  HypothesisMap map(views.ref.camera.width, views.ref.camera.height);
+const char* PhaseName(PassKind kind) {
+  switch (kind) {
+    case PassKind::kBasic:
+      return "basic";
+    case PassKind::kPrior:
+      return "prior";
+    case PassKind::kGeometric:
+      break;
+  }
+  return "geometric";
+}
+
+// ACMM's detail restoration: what came up from the coarser level stays unless
+// the finer level matches clearly better (specification 12.3).
+void KeepUnlessClearlyBetter(const HypothesisMap& carried, HypothesisMap* map) {
+  constexpr float kClearly = 0.1f;
+  for (size_t i = 0; i < map->planes.size(); ++i) {
+    if (map->costs[i] < carried.costs[i] - kClearly) continue;
+    map->planes[i] = carried.planes[i];
+    map->costs[i] = carried.costs[i];
+    map->masks[i] = carried.masks[i];
+  }
+}
+
+}  // namespace
+
+void RunStage(Backend* backend,
+              const ViewSet& views,
+              const Schedule& schedule,
+              const StageSpec& stage,
+              const MethodParams& params,
+              const RunControl& control,
+              HypothesisMap* map,
+              PhaseTimes* times) {
   {
     PhaseTimer timer(times, "prepare");
     backend->SetViews(views, params);
   }
-  const double num_passes = static_cast<double>(schedule.photometric.size());
-  for (size_t i = 0; i < schedule.photometric.size(); ++i) {
-    const Pass& pass = schedule.photometric[i];
+  HypothesisMap carried;
+  if (stage.from_coarser) {
+    PhaseTimer timer(times, "basic");
+    const Pass cost_only = {PassKind::kBasic,
+                            StartFrom::kCurrent,
+                            0,
+                            stage.passes.front().id,
+                            0,
+                            false};
+    backend->Run(cost_only, schedule.pattern, map, {control.cancel, nullptr});
+    carried = *map;
+  }
+  const double num_passes = static_cast<double>(stage.passes.size());
+  for (size_t i = 0; i < stage.passes.size(); ++i) {
+    const Pass& pass = stage.passes[i];
     RunControl pass_control = control;
     pass_control.progress = [&](double fraction) {
-      if (control.progress)
+      if (control.progress) {
         control.progress((static_cast<double>(i) + fraction) / num_passes);
+      }
     };
     if (pass.kind == PassKind::kPrior) {
       PhaseTimer timer(times, "build prior");
-      map.priors = BuildPrior(map,
-                              views.ref.camera,
-                              *views.ref.image,
-                              pass.level,
-                              {views.depth_min, views.depth_max});
-    } else {
-      map.priors.clear();
+      map->priors = BuildPrior(*map,
+                               views.ref.camera,
+                               *views.ref.image,
+                               pass.level,
+                               {views.depth_min, views.depth_max});
     }
-    PhaseTimer timer(times, pass.kind == PassKind::kPrior ? "prior" : "basic");
-    backend->Run(pass, schedule.pattern, &map, pass_control);
+    {
+      PhaseTimer timer(times, PhaseName(pass.kind));
+      backend->Run(pass, schedule.pattern, map, pass_control);
+    }
+    if (stage.from_coarser && pass.kind == PassKind::kBasic) {
+      KeepUnlessClearlyBetter(carried, map);
+    }
+    map->priors = {};
   }
-  map.priors = {};
-  return map;
-}
-
-void RefineGeometric(Backend* backend,
-                     const ViewSet& views,
-                     const Schedule& schedule,
-                     const Pass& pass,
-                     const MethodParams& params,
-                     const RunControl& control,
-                     HypothesisMap* map,
-                     PhaseTimes* times) {
-  {
-    PhaseTimer timer(times, "prepare");
-    backend->SetViews(views, params);
-  }
-  PhaseTimer timer(times, "geometric");
-  backend->Run(pass, schedule.pattern, map, control);
 }
 
 }  // namespace hpm

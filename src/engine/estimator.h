@@ -1,4 +1,4 @@
-// Runs the passes of a schedule for one reference image.
+// Runs the passes of one stage for one reference image.
 #pragma once
 
 #include "src/engine/backend.h"
@@ -12,22 +12,16 @@ namespace hpm {
 // Wall seconds per phase: "basic", "prior", "geometric", "filter", ...
 using PhaseTimes = std::map<std::string, double>;
 
-// The photometric group: basic and prior passes, from random numbers on.
-HypothesisMap EstimatePhotometric(Backend* backend,
-                                  const ViewSet& views,
-                                  const Schedule& schedule,
-                                  const MethodParams& params,
-                                  const RunControl& control,
-                                  PhaseTimes* times);
-
-// One geometric pass, in place; the sources' depth is in `views`.
-void RefineGeometric(Backend* backend,
-                     const ViewSet& views,
-                     const Schedule& schedule,
-                     const Pass& pass,
-                     const MethodParams& params,
-                     const RunControl& control,
-                     HypothesisMap* map,
-                     PhaseTimes* times);
+// `map` has the size of the reference and holds the hypotheses to start from
+// (distance 0: none); `views` the images, and for a geometric stage the depth
+// of the sources, at the stage's level.
+void RunStage(Backend* backend,
+              const ViewSet& views,
+              const Schedule& schedule,
+              const StageSpec& stage,
+              const MethodParams& params,
+              const RunControl& control,
+              HypothesisMap* map,
+              PhaseTimes* times);
 
 }  // namespace hpm

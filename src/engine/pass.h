@@ -2,8 +2,6 @@
 // (see schedule.h).
 #pragma once
 
-#include "src/core/checkerboard.h"
-#include "src/core/geometric_term.h"
 #include "src/core/initialize_pixel.h"
 
 namespace hpm {
@@ -34,8 +32,9 @@ struct Pass {
   PassKind kind;
   StartFrom start;
   int num_iterations;
-  int id;     // position in the method: part of the key of the random numbers
-  int level;  // kPrior: the prior is built on maps halved this many times
+  int id;  // position in the method: part of the key of the random numbers
+  int level = 0;  // kPrior: the prior is built on maps halved this many times
+  bool median = true;  // clean up at the end
 };
 
 }  // namespace hpm

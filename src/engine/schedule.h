@@ -1,4 +1,4 @@
-// Methods as data: the passes of each preset.
+// Methods as data: stages of passes.
 #pragma once
 
 #include "src/core/checkerboard.h"
@@ -13,21 +13,34 @@ struct ScheduleOptions {
   std::string method = "hpm";
   int num_iterations = 3;       // of basic and prior passes
   int num_geom_iterations = 3;  // of geometric passes
-  int num_geom_passes = 2;
-  int num_levels = -1;  // of the prior hierarchy; -1: by image size
+  int num_geom_passes = 2;      // 0: photometric only
+  int num_levels = 1;           // of the prior hierarchy or the image pyramid
+};
+
+// What runs without looking at other images' results. Between stages lies a
+// barrier over all images.
+struct StageSpec {
+  int level = 0;  // images and maps are halved this many times
+  bool geometric =
+      false;  // reads the maps of the stage before, of reference and sources
+  bool from_coarser =
+      false;  // starts from the maps of the stage before, upsampled
+  std::vector<Pass> passes;
 };
 
 struct Schedule {
   SamplingPattern pattern;
-  std::vector<Pass> photometric;  // per image, independent of other images
-  std::vector<Pass>
-      geometric;  // each reads the maps of the pass before, of all images
+  std::vector<StageSpec> stages;
 };
 
 // Names of all methods, for messages and help.
 std::vector<std::string> MethodNames();
 
-// For images of this size. Throws Error(kUsage) for an unknown method.
-Schedule MakeSchedule(const ScheduleOptions& options, int width, int height);
+// Throws Error(kUsage) for an unknown method.
+Schedule MakeSchedule(const ScheduleOptions& options);
+
+// Halvings of an image whose longer side is `side` pixels until at most 1000
+// are left, plus one (specification 1.2).
+int AutomaticLevels(int side);
 
 }  // namespace hpm

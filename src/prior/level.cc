@@ -4,20 +4,6 @@
 
 namespace hpm {
 
-Camera LevelCamera(const Camera& camera, int level) {
-  const int factor = 1 << level;
-  const float scale = 1.0f / static_cast<float>(factor);
-  Camera result = camera;
-  // Partial blocks at the right and lower border count as pixels.
-  result.width = (camera.width + factor - 1) / factor;
-  result.height = (camera.height + factor - 1) / factor;
-  result.fx *= scale;
-  result.fy *= scale;
-  result.cx = (camera.cx + 0.5f) * scale - 0.5f;
-  result.cy = (camera.cy + 0.5f) * scale - 0.5f;
-  return result;
-}
-
 LevelMap MakeLevel(const HypothesisMap& map, const Camera& camera, int level) {
   LevelMap result;
   result.camera = LevelCamera(camera, level);

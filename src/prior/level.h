@@ -14,10 +14,6 @@ struct LevelMap {
   std::vector<float> costs;
 };
 
-// Keeps the half-pixel: the centre of level pixel x lies at (x + 0.5) * 2^l -
-// 0.5.
-Camera LevelCamera(const Camera& camera, int level);
-
 // In each block of full-resolution pixels the one of smallest cost speaks for
 // the level pixel, with its plane evaluated at the block's centre.
 LevelMap MakeLevel(const HypothesisMap& map, const Camera& camera, int level);

@@ -1,0 +1,55 @@
+#include "colmap_plugin/controller/run_budget.h"
+
+#include "colmap_plugin/workspace/output_check.h"
+
+#include <algorithm>
+
+namespace hpm {
+
+MemoryNeeds LargestNeeds(const Workspace& workspace,
+                         const std::vector<StereoProblem>& problems,
+                         const Backend& backend,
+                         bool geometric) {
+  const auto pixels_of = [&](int image) {
+    const Camera& camera = workspace.camera(image);
+    return static_cast<uint64_t>(camera.width) * camera.height;
+  };
+  MemoryNeeds needs;
+  for (const StereoProblem& problem : problems) {
+    const Camera& ref = workspace.camera(problem.ref_image);
+    const uint64_t ref_pixels = pixels_of(problem.ref_image);
+    uint64_t inputs = ref_pixels;
+    for (const int src : problem.src_images) {
+      inputs += pixels_of(src) * (geometric ? 1 + sizeof(float) : 1);
+    }
+    const uint64_t maps_being_written = ref_pixels * 4 * sizeof(float);
+    const uint64_t working =
+        backend.MemoryNeeded(ref.width,
+                             ref.height,
+                             static_cast<int>(problem.src_images.size())) +
+        maps_being_written;
+    needs.working = std::max(needs.working, working);
+    needs.inputs = std::max(needs.inputs, inputs);
+  }
+  return needs;
+}
+
+uint64_t CacheBytes(double gibibytes) {
+  constexpr double kMaxGibibytes = 1 << 20;
+  return static_cast<uint64_t>(std::min(gibibytes, kMaxGibibytes) *
+                               (1ull << 30));
+}
+
+uint64_t BytesToWrite(const std::vector<StereoProblem>& problems,
+                      const StagePlan& plan) {
+  uint64_t bytes = 0;
+  for (int s = 0; s < static_cast<int>(plan.stages().size()); ++s) {
+    for (int p = 0; p < static_cast<int>(problems.size()); ++p) {
+      if (!plan.IsNeeded(s, p)) continue;
+      bytes += DepthAndNormalMapBytes(plan.CameraOf(s, problems[p].ref_image));
+    }
+  }
+  return bytes;
+}
+
+}  // namespace hpm

@@ -1,0 +1,80 @@
+#include "colmap_plugin/controller/run_statistics.h"
+
+#include <sys/resource.h>
+
+namespace hpm {
+namespace {
+
+uint64_t PeakMemoryBytes() {
+  rusage usage = {};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+}  // namespace
+
+void RunStatistics::Add(const std::string& image,
+                        const Stage& stage,
+                        const Camera& camera,
+                        const StageResult& result) {
+  const double size = static_cast<double>(camera.width) * camera.height;
+  evaluations_ += result.cost_evaluations_per_pixel * size;
+  if (computed_.insert(image).second) {
+    pixels_ += size * static_cast<double>(1 << (2 * stage.spec.level));
+  }
+  if (stage.is_final) {
+    valid_share_sum_ += result.valid_pixel_share;
+    ++num_final_maps_;
+  }
+  for (const auto& [phase, time] : result.seconds) seconds_[phase] += time;
+  images_[image][stage.name] = ToJson(result);
+}
+
+RunSummary RunStatistics::Summarize(
+    const std::vector<std::string>& problem_images,
+    const std::string& backend,
+    double seconds) const {
+  RunSummary summary;
+  summary.num_problems = static_cast<int>(problem_images.size());
+  summary.num_computed = static_cast<int>(computed_.size());
+  for (const std::string& image : problem_images) {
+    if (computed_.count(image) == 0 && !HasFailed(image)) ++summary.num_kept;
+  }
+  summary.failed.assign(failed_.begin(), failed_.end());
+  summary.seconds = seconds;
+  if (num_final_maps_ > 0) {
+    summary.valid_pixel_share = valid_share_sum_ / num_final_maps_;
+  }
+  if (pixels_ > 0) summary.ncc_evaluations_per_pixel = evaluations_ / pixels_;
+  summary.peak_memory_bytes = PeakMemoryBytes();
+  summary.cpu_target = backend;
+  return summary;
+}
+
+nlohmann::json RunStatistics::Record(const ControllerOptions& options,
+                                     const RunSummary& summary) const {
+  const PatchMatchStereoOptions& colmap = options.patch_match;
+  return {{"options",
+           {{"method", options.hpm.method},
+            {"random_seed", options.random_seed},
+            {"num_levels", options.hpm.num_levels},
+            {"num_iterations", options.hpm.num_iterations},
+            {"num_geom_iterations", options.hpm.num_geom_iterations},
+            {"num_geom_passes", options.hpm.num_geom_passes},
+            {"geom_consistency", colmap.geom_consistency},
+            {"max_image_size", colmap.max_image_size},
+            {"window_radius", colmap.window_radius},
+            {"filter", colmap.filter}}},
+          {"backend", summary.cpu_target},
+          {"seconds", summary.seconds},
+          {"seconds_per_phase", seconds_},
+          {"ncc_evaluations_per_pixel", summary.ncc_evaluations_per_pixel},
+          {"valid_pixel_share", summary.valid_pixel_share},
+          {"peak_memory_bytes", summary.peak_memory_bytes},
+          {"images_computed", summary.num_computed},
+          {"images_kept", summary.num_kept},
+          {"images_failed", summary.failed},
+          {"images", images_}};
+}
+
+}  // namespace hpm
