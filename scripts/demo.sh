@@ -36,9 +36,9 @@ build/demo/bench/render_cloud "$out/fused.ply" "$dense/sparse" 0003.png "$out/cl
 cat <<EOF
 
 Look at
-  $out/cloud.png               the points, seen from one of the cameras
-  $dense/images/0003.png       the photograph from there
-  $dense/stereo/previews/      depth and normals of every image
-  $out/fused.ply               the points
-  $out/mesh.ply                the surface
+  $out/cloud.png                the points, seen from one of the cameras
+  $dense/images/0003.png    the picture taken there
+  $dense/stereo/previews/   depth and normals of every image
+  $out/fused.ply                the points
+  $out/mesh.ply                 the surface
 EOF
