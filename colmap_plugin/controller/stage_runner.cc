@@ -20,6 +20,15 @@ namespace {
 constexpr float kDepthMinSlack = 0.6f;
 constexpr float kDepthMaxSlack = 1.2f;
 
+// By name, so that the order of the images in the model does not matter.
+uint64_t RandomKey(int seed, const std::string& image_name) {
+  uint64_t key = static_cast<uint64_t>(seed);
+  for (const char c : image_name) {
+    key = CombineBits(key, static_cast<unsigned char>(c));
+  }
+  return key;
+}
+
 }  // namespace
 
 nlohmann::json ToJson(const StageResult& result) {
@@ -88,8 +97,7 @@ ViewSet StageRunner::MakeViews(int stage, int problem) {
   }
   views.depth_min = kDepthMinSlack * p.depth_min;
   views.depth_max = kDepthMaxSlack * p.depth_max;
-  views.random_key = CombineBits(static_cast<uint64_t>(options_.random_seed),
-                                 static_cast<uint64_t>(p.ref_image));
+  views.random_key = RandomKey(options_.random_seed, name);
   src_images_.clear();
   for (const int src : p.src_images) {
     View view = {
