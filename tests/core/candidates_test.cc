@@ -2,6 +2,7 @@
 
 #include "src/core/sampling_pattern.h"
 #include "tests/core/fake_cost.h"
+#include "tests/core/test_cameras.h"
 
 #include <cmath>
 #include <vector>
@@ -38,6 +39,60 @@ TEST(MustExtend, MoreThanTwoBadViewsAreTooMany) {
   EXPECT_FALSE(Extends({0.1f, 0.1f, 1.3f, 1.3f}, 0, 0));
   EXPECT_TRUE(Extends({0.1f, 1.3f, 1.3f, 1.3f}, 0, 0));
   EXPECT_FALSE(Extends({0.1f, 1.2f, 1.2f, 1.2f}, 0, 0));
+}
+
+// The bound is meant for cameras that see the surface from about the same
+// distance; the shift of a sample may then exceed it by a factor of two.
+TEST(NearlySame, BoundsTheShiftOfThePatchInTheSourceView) {
+  constexpr float kBound = 0.05f;
+  Random random(8);
+  int num_same = 0, num_different = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const Camera ref = MakeTestCamera(200, 150, 180, 0, {0, 0, 0});
+    const Camera src = MakeTestCamera(200,
+                                      150,
+                                      200,
+                                      UniformIn(&random, -3, 3),
+                                      {UniformIn(&random, -0.7, 0.7),
+                                       UniformIn(&random, -0.7, 0.7),
+                                       UniformIn(&random, -0.3, 0.3)});
+    VisitParams params = {};
+    params.ref = ref;
+    params.patch_radius = 5;
+    params.same_plane_bound = kBound;
+    params.parallax = 1.1f * 200 * Norm(Center(src));
+    const Vec3f normal = RandomFacingNormal(&random);
+    const auto slip = static_cast<float>(UniformIn(&random, -0.003, 0.003));
+    const auto tilt = static_cast<float>(UniformIn(&random, -0.01, 0.01));
+    const Plane a = PlaneFromDepth(ref, 100, 75, 5, normal);
+    const Plane b =
+        PlaneFromDepth(ref,
+                       100,
+                       75,
+                       5 * (1 + slip),
+                       Normalized({normal.x + tilt, normal.y, normal.z}));
+    float shift = 0;
+    for (const int dcol : {-5, 0, 5}) {
+      for (const int drow : {-5, 0, 5}) {
+        const auto in_src = [&](const Plane& plane) {
+          return ProjectInto(
+              src, InWorld(ref, PointOn(ref, plane, 100 + dcol, 75 + drow)));
+        };
+        const Eigen::Vector3d moved = in_src(a) - in_src(b);
+        shift = std::fmax(shift,
+                          static_cast<float>(std::hypot(moved.x(), moved.y())));
+      }
+    }
+    if (NearlySame(params, SlopeOf(ref, a), SlopeOf(ref, b), 100, 75)) {
+      ++num_same;
+      EXPECT_LT(shift, 2 * kBound);
+    } else {
+      ++num_different;
+      EXPECT_GT(shift, 0);
+    }
+  }
+  EXPECT_GT(num_same, 100);
+  EXPECT_GT(num_different, 100);
 }
 
 constexpr int kSide = 201;
@@ -167,6 +222,28 @@ TEST_F(CollectCandidatesTest, GrowthStopsAtTheFirstConvincingSample) {
   const Candidates candidates = Collect(true, cost);
   EXPECT_TRUE(Proposes(candidates, kMiddle, kMiddle - 15));
   EXPECT_FALSE(Proposes(candidates, kMiddle, kMiddle - 25));
+}
+
+TEST_F(CollectCandidatesTest, NearlyEqualCandidatesShareOneRowOfCosts) {
+  params_.ref = MakeTestCamera(kSide, kSide, 200, 0, {0, 0, 0});
+  params_.patch_radius = 5;
+  params_.parallax = 100;
+  params_.same_plane_bound = 0.05f;
+  for (Plane& plane : planes_) plane = {{0, 0, -1}, 5};
+  planes_[Index(kMiddle, kMiddle - 5)].distance = 6;
+  costs_[Index(kMiddle, kMiddle - 5)] = 0.5f;
+  const FakeCost cost = {[](const Plane& plane, int) {
+    return plane.distance == 6 ? 0.2f : 0.1f;
+  }};
+  const Candidates candidates = Collect(true, cost);
+  EXPECT_EQ(cost.num_evaluations, 2 * 2);  // two planes, two views
+  EXPECT_EQ(__builtin_popcount(candidates.current), kNumRegions - 1);
+  for (int i = 0; i < kNumRegions; ++i) {
+    for (int j = 0; j < 2; ++j) {
+      EXPECT_EQ(candidates.matrix[i * 2 + j],
+                cost.photometric(candidates.plane[i], j));
+    }
+  }
 }
 
 TEST_F(CollectCandidatesTest, AWorseSampleFurtherOutReplacesNothing) {

@@ -41,6 +41,28 @@ TEST(Camera, RayAtProjectsBackToItsPixel) {
   }
 }
 
+// Pixel x of a level covers the full-size pixels from x * 2^level on.
+TEST(LevelCamera, KeepsPointsUnderTheSameBlockOfPixels) {
+  Random random(6);
+  for (int i = 0; i < 100; ++i) {
+    const Camera camera = RandomCamera(&random);
+    for (int level = 0; level <= 3; ++level) {
+      const Camera small = LevelCamera(camera, level);
+      const int factor = 1 << level;
+      const Eigen::Vector3d point =
+          InWorld(camera, {UniformIn(&random, -1, 1), 0.4, 5});
+      const Eigen::Vector3d full = ProjectInto(camera, point);
+      const Eigen::Vector3d half = ProjectInto(small, point);
+      EXPECT_NEAR((half.x() + 0.5) * factor - 0.5, full.x(), 1e-3);
+      EXPECT_NEAR((half.y() + 0.5) * factor - 0.5, full.y(), 1e-3);
+      EXPECT_GE(small.width * factor, camera.width);
+      EXPECT_LT((small.width - 1) * factor, camera.width);
+      EXPECT_GE(small.height * factor, camera.height);
+      EXPECT_LT((small.height - 1) * factor, camera.height);
+    }
+  }
+}
+
 TEST(Plane, FromDepthAndBackIsExactToRounding) {
   Random random(3);
   for (int i = 0; i < 1000; ++i) {

@@ -1,0 +1,203 @@
+// Whole runs over a small workspace, in process.
+#include "colmap_plugin/controller/controller.h"
+
+#include "colmap_plugin/formats/map_file.h"
+#include "src/base/error.h"
+#include "src/engine/schedule.h"
+#include "tests/colmap_plugin/controller/scene_workspace.h"
+
+#include <cmath>
+#include <map>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace hpm {
+namespace {
+
+constexpr int kNumImages = 4;
+constexpr int kWidth = 40;
+constexpr int kHeight = 30;
+
+class ControllerTest : public testing::Test {
+ protected:
+  ControllerTest() {
+    options_.workspace.path = scene_.path();
+    options_.hpm.method = "nesp";
+    options_.hpm.num_iterations = 2;
+    options_.hpm.num_geom_iterations = 1;
+    options_.patch_match.num_threads = 2;
+    options_.patch_match.cache_size = 0.1;
+  }
+
+  RunSummary Run() {
+    PatchMatchController controller(
+        options_,
+        [](LogLevel, const std::string&) {},
+        [this](const ProgressEvent& event) {
+          events_.push_back(event);
+          if (on_progress_) on_progress_(event);
+        },
+        cancel_);
+    return controller.Run();
+  }
+
+  std::filesystem::path MapPath(const std::string& folder,
+                                int image,
+                                const std::string& stage) const {
+    return scene_.path() / "stereo" / folder /
+           (ViewName(image) + "." + stage + ".bin");
+  }
+
+  std::vector<float> Depth(int image, const std::string& stage) const {
+    return ReadMap(MapPath("depth_maps", image, stage)).data;
+  }
+
+  std::vector<std::filesystem::path> FilesNamedLike(
+      const std::string& part) const {
+    std::vector<std::filesystem::path> found;
+    for (const auto& entry :
+         std::filesystem::recursive_directory_iterator(scene_.path())) {
+      if (entry.path().filename().string().find(part) != std::string::npos) {
+        found.push_back(entry.path());
+      }
+    }
+    return found;
+  }
+
+  SceneWorkspace scene_{SmallScene(kNumImages, kWidth, kHeight)};
+  ControllerOptions options_;
+  CancelToken cancel_;
+  std::vector<ProgressEvent> events_;
+  std::function<void(const ProgressEvent&)> on_progress_;
+};
+
+TEST_F(ControllerTest, WritesBothStagesOfEveryImage) {
+  const RunSummary summary = Run();
+  EXPECT_EQ(summary.num_problems, kNumImages);
+  EXPECT_EQ(summary.num_computed, kNumImages);
+  EXPECT_THAT(summary.failed, testing::IsEmpty());
+  EXPECT_GT(summary.valid_pixel_share, 0.5);
+  for (int i = 0; i < kNumImages; ++i) {
+    for (const char* stage : {"photometric", "geometric"}) {
+      const Map depth = ReadMap(MapPath("depth_maps", i, stage));
+      const Map normal = ReadMap(MapPath("normal_maps", i, stage));
+      EXPECT_EQ(depth.width, kWidth);
+      EXPECT_EQ(depth.height, kHeight);
+      EXPECT_EQ(normal.channels, 3);
+      const size_t size = depth.data.size();
+      for (size_t k = 0; k < size; ++k) {
+        const float length = std::hypot(
+            normal.data[k], normal.data[size + k], normal.data[2 * size + k]);
+        ASSERT_NEAR(length, depth.data[k] > 0 ? 1 : 0, 1e-4);
+      }
+    }
+  }
+}
+
+TEST_F(ControllerTest, ValidDepthsAreTrue) {
+  options_.hpm.num_iterations = 3;
+  options_.hpm.num_geom_iterations = 2;
+  Run();
+  const TrueMaps truth =
+      RenderTrueMaps(MakeTiltedPlane(SmallScene(kNumImages, kWidth, kHeight)),
+                     scene_.views()[1].camera,
+                     -0.5);  // on the rays of COLMAP's files
+  const std::vector<float> depth = Depth(1, "geometric");
+  int num_valid = 0, num_true = 0;
+  for (size_t i = 0; i < depth.size(); ++i) {
+    if (depth[i] == 0) continue;
+    ++num_valid;
+    num_true += std::abs(depth[i] / truth.depth[i] - 1) < 0.02;
+  }
+  EXPECT_GT(num_valid, kWidth * kHeight / 2);
+  EXPECT_GT(num_true, 0.9 * num_valid);
+}
+
+TEST_F(ControllerTest, SecondRunKeepsEverything) {
+  Run();
+  const std::vector<float> before = Depth(0, "geometric");
+  events_.clear();
+  const RunSummary second = Run();
+  EXPECT_EQ(second.num_computed, 0);
+  EXPECT_EQ(second.num_kept, kNumImages);
+  EXPECT_EQ(Depth(0, "geometric"), before);
+}
+
+// Whatever was lost, the maps that come back are the same.
+TEST_F(ControllerTest, ResumedRunGivesTheSameMaps) {
+  Run();
+  std::map<std::filesystem::path, std::vector<float>> before;
+  for (int i = 0; i < kNumImages; ++i) {
+    for (const char* stage : {"photometric", "geometric"}) {
+      const auto path = MapPath("depth_maps", i, stage);
+      before[path] = ReadMap(path).data;
+    }
+  }
+  std::filesystem::remove(MapPath("depth_maps", 2, "geometric"));
+  std::filesystem::remove(MapPath("normal_maps", 1, "photometric"));
+  options_.patch_match.num_threads = 1;
+  const RunSummary summary = Run();
+  EXPECT_GE(summary.num_computed, 2);
+  for (const auto& [path, data] : before) {
+    EXPECT_EQ(ReadMap(path).data, data) << path;
+  }
+}
+
+TEST_F(ControllerTest, OtherSeedComputesOtherMaps) {
+  Run();
+  const std::vector<float> before = Depth(0, "photometric");
+  options_.random_seed = 1;
+  EXPECT_EQ(Run().num_computed, kNumImages);
+  EXPECT_NE(Depth(0, "photometric"), before);
+}
+
+TEST_F(ControllerTest, ProgressNeverFallsAndEndsAtOne) {
+  Run();
+  ASSERT_FALSE(events_.empty());
+  double before = 0;
+  for (const ProgressEvent& event : events_) {
+    EXPECT_GE(event.fraction, before - 1e-9);
+    EXPECT_LE(event.image_number, event.num_images);
+    before = event.fraction;
+  }
+  EXPECT_NEAR(events_.back().fraction, 1, 1e-9);
+}
+
+TEST_F(ControllerTest, CancelledRunThrowsAndLeavesNoTornFiles) {
+  on_progress_ = [this](const ProgressEvent& event) {
+    if (event.image_number == 2) cancel_.Cancel();
+  };
+  try {
+    Run();
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::kInterrupted);
+  }
+  EXPECT_FALSE(
+      std::filesystem::exists(MapPath("depth_maps", 1, "photometric")));
+  EXPECT_THAT(FilesNamedLike("tmp"), testing::IsEmpty());
+  EXPECT_THAT(FilesNamedLike("lock"), testing::IsEmpty());
+}
+
+TEST_F(ControllerTest, UnreadableImageFailsAloneAndIsNamed) {
+  std::filesystem::resize_file(scene_.path() / "images" / ViewName(1), 60);
+  const RunSummary summary = Run();
+  EXPECT_THAT(summary.failed, testing::ElementsAre(ViewName(1)));
+  EXPECT_EQ(summary.num_computed, kNumImages - 1);
+  EXPECT_TRUE(std::filesystem::exists(MapPath("depth_maps", 0, "geometric")));
+  EXPECT_FALSE(std::filesystem::exists(MapPath("depth_maps", 1, "geometric")));
+}
+
+TEST_F(ControllerTest, EveryMethodRuns) {
+  options_.hpm.num_iterations = 1;
+  options_.hpm.num_levels = 2;
+  for (const std::string& method : MethodNames()) {
+    options_.hpm.method = method;
+    EXPECT_EQ(Run().num_computed, kNumImages) << method;
+    EXPECT_EQ(Depth(0, "geometric").size(), kWidth * kHeight * 1u);
+  }
+}
+
+}  // namespace
+}  // namespace hpm

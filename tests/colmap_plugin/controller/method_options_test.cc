@@ -1,0 +1,49 @@
+#include "colmap_plugin/controller/method_options.h"
+
+#include <gtest/gtest.h>
+
+namespace hpm {
+namespace {
+
+TEST(MethodOptions, SpatialSigmaFollowsTheWindowUnlessGiven) {
+  ControllerOptions options;
+  options.patch_match.window_radius = 7;
+  EXPECT_EQ(MakeMethodParams(options).patch_radius, 7);
+  EXPECT_EQ(MakeMethodParams(options).sigma_spatial, 7);
+  options.patch_match.sigma_spatial = 3;
+  EXPECT_EQ(MakeMethodParams(options).sigma_spatial, 3);
+}
+
+TEST(MethodOptions, DefaultsAreThePapersNotColmaps) {
+  const MethodParams params = MakeMethodParams(ControllerOptions());
+  EXPECT_EQ(params.sigma_color, 3);  // grey levels of 255
+  EXPECT_EQ(params.num_view_draws, 15);
+  EXPECT_FLOAT_EQ(params.geom_weight, 0.1f);
+  EXPECT_EQ(params.geom_max_error, 5);
+}
+
+TEST(MethodOptions, WithoutGeometricConsistencyThereAreNoGeometricPasses) {
+  ControllerOptions options;
+  options.hpm.num_geom_passes = 3;
+  EXPECT_EQ(MakeScheduleOptions(options).num_geom_passes, 3);
+  options.patch_match.geom_consistency = false;
+  EXPECT_EQ(MakeScheduleOptions(options).num_geom_passes, 0);
+}
+
+TEST(MethodOptions, FilterAngleIsInRadians) {
+  PatchMatchStereoOptions options;
+  options.filter_min_triangulation_angle = 90;
+  EXPECT_NEAR(
+      MakeFilterParams(options, 9).min_triangulation_angle, 1.5707963, 1e-6);
+}
+
+// Contract 3.2: COLMAP lowers the count for images with few sources.
+TEST(MethodOptions, FilterAsksForNoMoreViewsThanThereAre) {
+  PatchMatchStereoOptions options;
+  options.filter_min_num_consistent = 4;
+  EXPECT_EQ(MakeFilterParams(options, 9).min_num_consistent, 4);
+  EXPECT_EQ(MakeFilterParams(options, 2).min_num_consistent, 2);
+}
+
+}  // namespace
+}  // namespace hpm

@@ -1,0 +1,176 @@
+#include "colmap_plugin/controller/ray_convention.h"
+
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+namespace hpm {
+namespace {
+
+constexpr int kWidth = 31;
+constexpr int kHeight = 23;
+
+const Camera kCamera = {kWidth,
+                        kHeight,
+                        40,
+                        42,
+                        14.5f,
+                        11.25f,
+                        {{0, -1, 0, 1, 0, 0, 0, 0, 1}},
+                        {0.3f, -0.2f, 0.7f}};
+
+// K as in the sparse model: pixel centres at +0.5.
+Camera SparseModelCamera() {
+  Camera camera = kCamera;
+  camera.cx += 0.5f;
+  camera.cy += 0.5f;
+  return camera;
+}
+
+HypothesisMap RandomPlanes() {
+  std::mt19937 random(1);
+  const auto uniform = [&](float lo, float hi) {
+    return lo + (hi - lo) * static_cast<float>(random() / 4294967296.0);
+  };
+  HypothesisMap map(kWidth, kHeight);
+  for (int row = 0; row < kHeight; ++row) {
+    for (int col = 0; col < kWidth; ++col) {
+      map.planes[row * kWidth + col] = PlaneFromDepth(
+          kCamera,
+          static_cast<float>(col),
+          static_cast<float>(row),
+          uniform(1, 9),
+          Normalized({uniform(-0.6f, 0.6f), uniform(-0.6f, 0.6f), -1}));
+    }
+  }
+  return map;
+}
+
+TEST(RayConvention, RoundTripIsExactToRounding) {
+  const HypothesisMap map = RandomPlanes();
+  const DepthAndNormal files = ToColmapMaps(map, kCamera);
+  const HypothesisMap back = FromColmapMaps(files.depth, files.normal, kCamera);
+  for (size_t i = 0; i < map.planes.size(); ++i) {
+    EXPECT_EQ(Norm(back.planes[i].normal - map.planes[i].normal), 0);
+    EXPECT_NEAR(back.planes[i].distance / map.planes[i].distance, 1, 1e-6);
+  }
+}
+
+TEST(RayConvention, RoundTripsDoNotDrift) {
+  HypothesisMap map = RandomPlanes();
+  const HypothesisMap first = map;
+  for (int i = 0; i < 20; ++i) {
+    const DepthAndNormal files = ToColmapMaps(map, kCamera);
+    map = FromColmapMaps(files.depth, files.normal, kCamera);
+  }
+  for (size_t i = 0; i < map.planes.size(); ++i) {
+    EXPECT_NEAR(map.planes[i].distance / first.planes[i].distance, 1, 5e-6);
+  }
+}
+
+// Fusion puts the value of (col, row) on the ray K^-1 (col, row, 1) of the
+// sparse model's K: the point must lie on the plane that was estimated.
+TEST(RayConvention, FusionsPointsLieOnThePlane) {
+  const HypothesisMap map = RandomPlanes();
+  const DepthAndNormal files = ToColmapMaps(map, kCamera);
+  const Camera fusion = SparseModelCamera();
+  for (int row = 0; row < kHeight; ++row) {
+    for (int col = 0; col < kWidth; ++col) {
+      const size_t i = static_cast<size_t>(row) * kWidth + col;
+      const Vec3f point =
+          files.depth.data[i] *
+          RayAt(fusion, static_cast<float>(col), static_cast<float>(row));
+      EXPECT_NEAR(
+          Dot(map.planes[i].normal, point) + map.planes[i].distance, 0, 1e-5);
+    }
+  }
+}
+
+// One plane for the whole picture: in the world, all points lie on it.
+TEST(RayConvention, FusedWallIsTheTrueWall) {
+  const Vec3f normal = Normalized({0.3f, -0.2f, -1});
+  HypothesisMap map(kWidth, kHeight);
+  const Plane wall = PlaneFromDepth(kCamera, 10, 10, 5, normal);
+  for (Plane& plane : map.planes) plane = wall;
+  const Map depth = ToColmapMaps(map, kCamera).depth;
+  const Camera fusion = SparseModelCamera();
+  // In the world frame: n_w . X + d_w = 0.
+  const Vec3f n_world = Transposed(kCamera.R) * normal;
+  const float d_world = wall.distance + Dot(normal, kCamera.t);
+  for (int row = 0; row < kHeight; ++row) {
+    for (int col = 0; col < kWidth; ++col) {
+      const Vec3f point = WorldFromCam(
+          fusion,
+          depth.data[static_cast<size_t>(row) * kWidth + col] *
+              RayAt(fusion, static_cast<float>(col), static_cast<float>(row)));
+      EXPECT_NEAR(Dot(n_world, point) + d_world, 0, 1e-5);
+    }
+  }
+}
+
+TEST(RayConvention, NormalsAreStoredPlaneByPlane) {
+  const HypothesisMap map = RandomPlanes();
+  const DepthAndNormal files = ToColmapMaps(map, kCamera);
+  ASSERT_EQ(files.depth.channels, 1);
+  ASSERT_EQ(files.normal.channels, 3);
+  const size_t size = map.planes.size();
+  ASSERT_EQ(files.normal.data.size(), 3 * size);
+  EXPECT_EQ(files.normal.data[77], map.planes[77].normal.x);
+  EXPECT_EQ(files.normal.data[size + 77], map.planes[77].normal.y);
+  EXPECT_EQ(files.normal.data[2 * size + 77], map.planes[77].normal.z);
+}
+
+TEST(RayConvention, PixelsNotKeptOrWithoutAPlaneAreZero) {
+  HypothesisMap map = RandomPlanes();
+  map.planes[5] = {{0, 0, 0}, 0};
+  std::vector<bool> keep(map.planes.size(), true);
+  keep[7] = false;
+  const DepthAndNormal files = ToColmapMaps(map, kCamera, &keep);
+  const HypothesisMap back = FromColmapMaps(files.depth, files.normal, kCamera);
+  const size_t size = map.planes.size();
+  for (const size_t i : {size_t{5}, size_t{7}}) {
+    EXPECT_EQ(files.depth.data[i], 0);
+    for (int channel = 0; channel < 3; ++channel) {
+      EXPECT_EQ(files.normal.data[channel * size + i], 0);
+    }
+    EXPECT_EQ(back.planes[i].distance, 0);
+  }
+  EXPECT_GT(files.depth.data[6], 0);
+}
+
+// Seen nearly edge-on a plane may meet the ray of the pixel's centre but not
+// the one half a pixel beside it.
+TEST(RayConvention, PlaneThatMissesColmapsRayBecomesZero) {
+  HypothesisMap map = RandomPlanes();
+  const Vec3f ray = RayAt(kCamera, 20, 10);
+  const Vec3f other = RayAt(kCamera, 19.75f, 10);
+  Vec3f edge_on = Normalized(Cross(Cross(ray, other), other));
+  if (Dot(edge_on, ray) > 0) edge_on = -edge_on;
+  map.planes[10 * kWidth + 20] = PlaneFromDepth(kCamera, 20, 10, 5, edge_on);
+  const DepthAndNormal files = ToColmapMaps(map, kCamera);
+  EXPECT_EQ(files.depth.data[10 * kWidth + 20], 0);
+  EXPECT_EQ(files.normal.data[10 * kWidth + 20], 0);
+}
+
+TEST(RayConvention, NonFinitePlanesBecomeZero) {
+  HypothesisMap map = RandomPlanes();
+  map.planes[3] = {{NAN, 0, -1}, 1};
+  map.planes[4] = {{0, 0, -1}, INFINITY};
+  map.planes[5] = {{0, 0, -1}, NAN};
+  const DepthAndNormal files = ToColmapMaps(map, kCamera);
+  for (const int i : {3, 4, 5}) EXPECT_EQ(files.depth.data[i], 0);
+}
+
+TEST(InverseDepths, AreThoseAtPixelCentres) {
+  HypothesisMap map = RandomPlanes();
+  map.planes[9] = {{0, 0, 0}, 0};
+  const std::vector<float> inverse = InverseDepths(map, kCamera);
+  ASSERT_EQ(inverse.size(), map.planes.size());
+  EXPECT_EQ(inverse[9], 0);
+  EXPECT_FLOAT_EQ(inverse[3 * kWidth + 4],
+                  1 / DepthAt(kCamera, map.planes[3 * kWidth + 4], 4, 3));
+}
+
+}  // namespace
+}  // namespace hpm

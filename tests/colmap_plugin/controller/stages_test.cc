@@ -1,0 +1,313 @@
+#include "colmap_plugin/controller/stages.h"
+
+#include "colmap_plugin/controller/method_options.h"
+#include "colmap_plugin/formats/consistency_graph.h"
+#include "colmap_plugin/formats/map_file.h"
+#include "colmap_plugin/workspace/stamp.h"
+#include "tests/colmap_plugin/controller/scene_workspace.h"
+
+#include <fstream>
+#include <functional>
+#include <set>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace hpm {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+constexpr int kWidth = 12;
+constexpr int kHeight = 9;
+
+// Five images in a row, each with its neighbours as sources; photometric and
+// three geometric stages.
+class StagePlanTest : public testing::Test {
+ protected:
+  StagePlanTest() {
+    options_.hpm.method = "nesp";
+    options_.hpm.num_levels = 1;
+    options_.hpm.num_geom_passes = 3;
+    for (int i = 0; i < 5; ++i) {
+      StereoProblem problem;
+      problem.ref_image = i;
+      if (i > 0) problem.src_images.push_back(i - 1);
+      if (i < 4) problem.src_images.push_back(i + 1);
+      problem.depth_min = 3;
+      problem.depth_max = 8;
+      problems_.push_back(problem);
+    }
+  }
+
+  StagePlan Plan() {
+    return StagePlan(workspace_,
+                     problems_,
+                     MakeSchedule(MakeScheduleOptions(options_)),
+                     options_);
+  }
+
+  // The problems to compute in a stage.
+  static std::vector<int> Needed(const StagePlan& plan, int stage) {
+    std::vector<int> needed;
+    for (int p = 0; p < 5; ++p) {
+      if (plan.IsNeeded(stage, p)) needed.push_back(p);
+    }
+    EXPECT_EQ(plan.CountNeeded(stage), static_cast<int>(needed.size()));
+    return needed;
+  }
+
+  void Finish(const StagePlan& plan, int stage, int problem) {
+    const StageFiles files = plan.Files(stage, problems_[problem].ref_image);
+    for (const auto& path : {files.depth, files.normal}) {
+      std::filesystem::create_directories(path.parent_path());
+    }
+    std::vector<float> data(kWidth * kHeight, 1.0f);
+    WriteMap(files.depth, {kWidth, kHeight, 1, data});
+    data.resize(3 * data.size(), 0.5f);
+    WriteMap(files.normal, {kWidth, kHeight, 3, data});
+    const std::string& stage_name = plan.stages()[stage].name;
+    const std::string& name =
+        workspace_.ImageName(problems_[problem].ref_image);
+    WriteStamp(workspace_.StatePath(),
+               name,
+               stage_name,
+               plan.FingerprintOf(stage, problem),
+               nullptr);
+  }
+
+  void FinishAll(bool inner) {
+    const StagePlan plan = Plan();
+    for (int s = 0; s < static_cast<int>(plan.stages().size()); ++s) {
+      if (!inner && !plan.stages()[s].is_public) continue;
+      for (int p = 0; p < 5; ++p) Finish(plan, s, p);
+    }
+  }
+
+  std::filesystem::path DepthFile(int stage, int problem) {
+    return Plan().Files(stage, problem).depth;
+  }
+
+  // Stages in which the fingerprint of problem 2 changes with the options.
+  std::set<int> ChangedBy(const std::function<void()>& change) {
+    const ControllerOptions options = options_;
+    const std::vector<StereoProblem> problems = problems_;
+    const StagePlan before = Plan();
+    std::vector<std::string> old;
+    for (int s = 0; s < 4; ++s) old.push_back(before.FingerprintOf(s, 2));
+    change();
+    const StagePlan after = Plan();
+    std::set<int> changed;
+    for (int s = 0; s < 4; ++s) {
+      if (after.FingerprintOf(s, 2) != old[s]) changed.insert(s);
+    }
+    options_ = options;
+    problems_ = problems;
+    return changed;
+  }
+
+  SceneWorkspace scene_{SmallScene(5, kWidth, kHeight)};
+  Workspace workspace_ = scene_.Open();
+  ControllerOptions options_;
+  std::vector<StereoProblem> problems_;
+};
+
+TEST_F(StagePlanTest, StagesHaveColmapsNamesAtBothEnds) {
+  const StagePlan plan = Plan();
+  ASSERT_EQ(plan.stages().size(), 4u);
+  EXPECT_EQ(plan.stages()[0].name, "photometric");
+  EXPECT_EQ(plan.stages()[1].name, "geometric_1");
+  EXPECT_EQ(plan.stages()[2].name, "geometric_2");
+  EXPECT_EQ(plan.stages()[3].name, "geometric");
+  EXPECT_TRUE(plan.stages()[3].is_final);
+  EXPECT_EQ(
+      plan.Files(3, 1).depth,
+      scene_.path() / "stereo/depth_maps" / (ViewName(1) + ".geometric.bin"));
+  EXPECT_EQ(plan.Files(0, 1).normal,
+            scene_.path() / "stereo/normal_maps" /
+                (ViewName(1) + ".photometric.bin"));
+  // Inner maps stay out of COLMAP's folders.
+  EXPECT_THAT(plan.Files(1, 1).depth.string(),
+              testing::StartsWith(workspace_.StatePath().string()));
+}
+
+TEST_F(StagePlanTest, WithoutGeometricConsistencyPhotometricIsFinal) {
+  options_.patch_match.geom_consistency = false;
+  const StagePlan plan = Plan();
+  ASSERT_EQ(plan.stages().size(), 1u);
+  EXPECT_EQ(plan.stages()[0].name, "photometric");
+  EXPECT_TRUE(plan.stages()[0].is_final);
+}
+
+TEST_F(StagePlanTest, EverythingIsNeededInAFreshWorkspace) {
+  const StagePlan plan = Plan();
+  for (int s = 0; s < 4; ++s) {
+    EXPECT_THAT(Needed(plan, s), ElementsAre(0, 1, 2, 3, 4));
+  }
+  EXPECT_FALSE(plan.ReplacesForeignMaps());
+}
+
+TEST_F(StagePlanTest, NothingIsNeededWhenThePublicMapsAreComplete) {
+  FinishAll(false);
+  const StagePlan plan = Plan();
+  for (int s = 0; s < 4; ++s) EXPECT_THAT(Needed(plan, s), IsEmpty());
+  EXPECT_FALSE(plan.ReplacesForeignMaps());
+}
+
+// The final map of image 0 needs geometric_2 of 0 and its source 1, these need
+// geometric_1 of 0, 1 and 2.
+TEST_F(StagePlanTest, LostFinalMapNeedsInnerMapsOfItsSourcesBackward) {
+  FinishAll(false);
+  std::filesystem::remove(DepthFile(3, 0));
+  const StagePlan plan = Plan();
+  EXPECT_THAT(Needed(plan, 3), ElementsAre(0));
+  EXPECT_THAT(Needed(plan, 2), ElementsAre(0, 1));
+  EXPECT_THAT(Needed(plan, 1), ElementsAre(0, 1, 2));
+  EXPECT_THAT(Needed(plan, 0), IsEmpty());
+}
+
+TEST_F(StagePlanTest, InnerMapsThatAreThereAreUsed) {
+  FinishAll(true);
+  std::filesystem::remove(DepthFile(3, 0));
+  std::filesystem::remove(DepthFile(2, 1));
+  const StagePlan plan = Plan();
+  EXPECT_THAT(Needed(plan, 3), ElementsAre(0));
+  EXPECT_THAT(Needed(plan, 2), ElementsAre(1));
+  EXPECT_THAT(Needed(plan, 1), IsEmpty());
+  EXPECT_THAT(Needed(plan, 0), IsEmpty());
+}
+
+TEST_F(StagePlanTest, LostInnerMapsAreNotMissedOnceTheResultIsThere) {
+  FinishAll(true);
+  std::filesystem::remove_all(workspace_.StatePath() / "geometric_1");
+  for (int s = 0; s < 4; ++s) EXPECT_THAT(Needed(Plan(), s), IsEmpty());
+}
+
+TEST_F(StagePlanTest, LostPhotometricMapIsComputedAgainAlone) {
+  FinishAll(false);
+  std::filesystem::remove(DepthFile(0, 2));
+  const StagePlan plan = Plan();
+  EXPECT_THAT(Needed(plan, 0), ElementsAre(2));
+  for (int s = 1; s < 4; ++s) EXPECT_THAT(Needed(plan, s), IsEmpty());
+}
+
+// An interrupted run: photometric done but for image 3.
+TEST_F(StagePlanTest, ResumeComputesWhatIsMissing) {
+  const StagePlan fresh = Plan();
+  for (const int p : {0, 1, 2, 4}) Finish(fresh, 0, p);
+  const StagePlan plan = Plan();
+  EXPECT_THAT(Needed(plan, 0), ElementsAre(3));
+  for (int s = 1; s < 4; ++s) {
+    EXPECT_THAT(Needed(plan, s), ElementsAre(0, 1, 2, 3, 4));
+  }
+}
+
+TEST_F(StagePlanTest, DamagedMapsAreComputedAgain) {
+  FinishAll(false);
+  const StagePlan before = Plan();
+  std::filesystem::resize_file(before.Files(3, 0).depth, 40);  // cut
+  std::filesystem::remove(before.Files(3, 1).normal);
+  std::ofstream(before.Files(3, 2).normal) << "no map";
+  WriteMap(before.Files(3, 3).depth, {2, 2, 1, {1, 1, 1, 1}});  // other size
+  // The channels of a normal map.
+  WriteMap(before.Files(3, 4).depth,
+           {kWidth, kHeight, 3, std::vector<float>(3 * kWidth * kHeight, 1)});
+  const StagePlan plan = Plan();
+  EXPECT_THAT(Needed(plan, 3), ElementsAre(0, 1, 2, 3, 4));
+  EXPECT_FALSE(plan.ReplacesForeignMaps());
+}
+
+TEST_F(StagePlanTest, MapsWithoutTheirStampAreForeign) {
+  FinishAll(false);
+  std::filesystem::remove_all(workspace_.StatePath() / "stamps");
+  const StagePlan plan = Plan();
+  EXPECT_THAT(Needed(plan, 0), ElementsAre(0, 1, 2, 3, 4));
+  EXPECT_THAT(Needed(plan, 3), ElementsAre(0, 1, 2, 3, 4));
+  EXPECT_TRUE(plan.ReplacesForeignMaps());
+}
+
+TEST_F(StagePlanTest, MapsMadeWithOtherOptionsAreForeign) {
+  FinishAll(false);
+  options_.random_seed = 1;
+  const StagePlan plan = Plan();
+  EXPECT_THAT(Needed(plan, 0), ElementsAre(0, 1, 2, 3, 4));
+  EXPECT_TRUE(plan.ReplacesForeignMaps());
+}
+
+TEST_F(StagePlanTest, FilterOptionsConcernTheFinalStageOnly) {
+  FinishAll(false);
+  options_.patch_match.filter_min_ncc = 0.2;
+  const StagePlan plan = Plan();
+  EXPECT_THAT(Needed(plan, 3), ElementsAre(0, 1, 2, 3, 4));
+  EXPECT_THAT(Needed(plan, 0), IsEmpty());
+}
+
+TEST_F(StagePlanTest, EachOptionChangesTheFingerprintsItConcerns) {
+  using Changed = std::set<int>;
+  const Changed all = {0, 1, 2, 3}, geometric = {1, 2, 3}, final = {3};
+  auto& hpm = options_.hpm;
+  auto& colmap = options_.patch_match;
+  EXPECT_EQ(ChangedBy([&] {}), Changed());
+  EXPECT_EQ(ChangedBy([&] { hpm.method = "acmh"; }), all);
+  EXPECT_EQ(ChangedBy([&] { hpm.num_iterations = 7; }), all);
+  EXPECT_EQ(ChangedBy([&] { hpm.num_geom_iterations = 7; }), geometric);
+  EXPECT_EQ(ChangedBy([&] { hpm.geom_weight = 0.2; }), geometric);
+  EXPECT_EQ(ChangedBy([&] { hpm.geom_max_error = 3; }), geometric);
+  EXPECT_EQ(ChangedBy([&] { options_.random_seed = 5; }), all);
+  EXPECT_EQ(ChangedBy([&] { colmap.window_radius = 4; }), all);
+  EXPECT_EQ(ChangedBy([&] { colmap.sigma_spatial = 4; }), all);
+  EXPECT_EQ(ChangedBy([&] { colmap.num_samples = 30; }), all);
+  EXPECT_EQ(ChangedBy([&] { colmap.filter = false; }), final);
+  EXPECT_EQ(ChangedBy([&] { colmap.filter_min_num_consistent = 1; }), final);
+  EXPECT_EQ(ChangedBy([&] { colmap.filter_min_triangulation_angle = 1; }),
+            final);
+  EXPECT_EQ(ChangedBy([&] { colmap.filter_geom_consistency_max_cost = 2; }),
+            final);
+  EXPECT_EQ(ChangedBy([&] { problems_[2].depth_max = 9; }), all);
+  EXPECT_EQ(ChangedBy([&] { problems_[2].src_images = {1}; }), all);
+  // Of a source, and of a source's source: they come in with the depth maps.
+  EXPECT_EQ(ChangedBy([&] { problems_[1].depth_max = 9; }), geometric);
+  EXPECT_EQ(ChangedBy([&] { problems_[0].depth_max = 9; }), (Changed{2, 3}));
+  // What cannot change a map.
+  EXPECT_EQ(ChangedBy([&] { colmap.num_threads = 7; }), Changed());
+  EXPECT_EQ(ChangedBy([&] { colmap.cache_size = 1; }), Changed());
+  EXPECT_EQ(ChangedBy([&] { hpm.previews = true; }), Changed());
+  EXPECT_EQ(ChangedBy([&] {
+              std::ofstream(workspace_.ImagePath(2), std::ios::app) << "x";
+            }),
+            all);
+}
+
+TEST_F(StagePlanTest, OverwriteNeedsEverything) {
+  FinishAll(true);
+  options_.hpm.overwrite = true;
+  for (int s = 0; s < 4; ++s) {
+    EXPECT_THAT(Needed(Plan(), s), ElementsAre(0, 1, 2, 3, 4));
+  }
+}
+
+TEST_F(StagePlanTest, MissingConsistencyGraphsAreMadeWhenAskedFor) {
+  FinishAll(false);
+  options_.patch_match.write_consistency_graph = true;
+  EXPECT_THAT(Needed(Plan(), 3), ElementsAre(0, 1, 2, 3, 4));
+  const StagePlan plan = Plan();
+  for (const int s : {0, 3}) {
+    EXPECT_TRUE(plan.WritesGraph(s));
+    for (int p = 0; p < 5; ++p) {
+      WriteConsistencyGraph(plan.Files(s, p).graph, {kWidth, kHeight, {}});
+    }
+  }
+  EXPECT_FALSE(plan.WritesGraph(1));
+  EXPECT_THAT(Needed(Plan(), 3), IsEmpty());
+}
+
+// A source that is never a reference has no maps; nothing waits for it.
+TEST_F(StagePlanTest, SourcesThatAreNoReferencesAreNotComputed) {
+  problems_.resize(2);
+  const StagePlan plan = Plan();
+  for (int s = 0; s < 4; ++s) EXPECT_EQ(plan.CountNeeded(s), 2);
+}
+
+}  // namespace
+}  // namespace hpm

@@ -1,0 +1,163 @@
+#include "src/cpu/cpu_backend.h"
+
+#include "src/core/sampling_pattern.h"
+#include "tests/cpu/scene_views.h"
+
+#include <atomic>
+#include <chrono>
+#include <cstring>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+namespace hpm {
+namespace {
+
+constexpr int kWidth = 48;
+constexpr int kHeight = 37;
+
+const Pass kBasic = {PassKind::kBasic, StartFrom::kRandom, 2, 0, 0};
+const Pass kGeometric = {PassKind::kGeometric, StartFrom::kCurrent, 1, 1, 0};
+
+class CpuBackendTest : public testing::Test {
+ protected:
+  static ViewSet MakeViews() {
+    SceneOptions options;
+    options.num_views = 4;
+    options.width = kWidth;
+    options.height = kHeight;
+    const auto rendered = RenderViews(MakeScene("sphere", options), 1);
+    ViewSet views = AsViewSet(rendered);
+    for (size_t j = 0; j < views.srcs.size(); ++j) {
+      std::vector<float> inverse;
+      for (const float z : rendered[j + 1].truth.depth) {
+        inverse.push_back(1 / z);
+      }
+      views.srcs[j].inverse_depth =
+          std::make_shared<const std::vector<float>>(std::move(inverse));
+    }
+    return views;
+  }
+
+  struct Result {
+    HypothesisMap map;
+    std::vector<uint32_t> consistent;
+    uint64_t num_evaluations;
+  };
+
+  Result RunAll(int num_threads, uint64_t key = 42) {
+    ViewSet views = views_;
+    views.random_key = key;
+    const auto backend = MakeCpuBackend("auto", num_threads);
+    backend->SetViews(views, MethodParams());
+    Result result = {HypothesisMap(kWidth, kHeight), {}, 0};
+    backend->Run(kBasic, pattern_, &result.map, control_);
+    backend->Run(kGeometric, pattern_, &result.map, control_);
+    result.consistent = backend->ConsistentViews(
+        result.map, {0.1f, 0.05f, 1.0f, 2}, true, control_);
+    result.num_evaluations = backend->num_cost_evaluations();
+    return result;
+  }
+
+  template <class T>
+  static bool SameBytes(const std::vector<T>& a, const std::vector<T>& b) {
+    return a.size() == b.size() &&
+           std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+  }
+
+  const ViewSet views_ = MakeViews();
+  const SamplingPattern pattern_ = MakeSamplingPattern(true, true);
+  CancelToken cancel_;
+  RunControl control_ = {&cancel_, nullptr};
+};
+
+TEST_F(CpuBackendTest, OneAndTwoThreadsGiveTheSameBytes) {
+  const Result one = RunAll(1);
+  const Result two = RunAll(2);
+  EXPECT_TRUE(SameBytes(one.map.planes, two.map.planes));
+  EXPECT_TRUE(SameBytes(one.map.costs, two.map.costs));
+  EXPECT_TRUE(SameBytes(one.map.masks, two.map.masks));
+  EXPECT_EQ(one.consistent, two.consistent);
+  EXPECT_EQ(one.num_evaluations, two.num_evaluations);
+  EXPECT_GT(one.num_evaluations, 0u);
+}
+
+TEST_F(CpuBackendTest, AnotherSeedGivesAnotherMap) {
+  EXPECT_FALSE(SameBytes(RunAll(2, 1).map.planes, RunAll(2, 2).map.planes));
+}
+
+TEST_F(CpuBackendTest, SettingTheViewsAgainLeavesNothingBehind) {
+  const auto backend = MakeCpuBackend("auto", 2);
+  HypothesisMap maps[2];
+  for (HypothesisMap& map : maps) {
+    map = HypothesisMap(kWidth, kHeight);
+    backend->SetViews(views_, MethodParams());
+    EXPECT_EQ(backend->num_cost_evaluations(), 0u);
+    backend->Run(kBasic, pattern_, &map, control_);
+  }
+  EXPECT_TRUE(SameBytes(maps[0].planes, maps[1].planes));
+}
+
+TEST_F(CpuBackendTest, ProgressRisesToOne) {
+  std::vector<double> fractions;
+  control_.progress = [&](double f) { fractions.push_back(f); };
+  RunAll(2);
+  ASSERT_GT(fractions.size(), 4u);
+  EXPECT_EQ(fractions.back(), 1);
+  const size_t first_pass = 2 + 2 * 2;
+  for (size_t i = 1; i < first_pass; ++i) {
+    EXPECT_GT(fractions[i], fractions[i - 1]);
+  }
+}
+
+TEST_F(CpuBackendTest, NameTellsTargetAndThreads) {
+  EXPECT_EQ(MakeCpuBackend("scalar", 2)->Name(), "cpu scalar, 2 threads");
+}
+
+TEST_F(CpuBackendTest, MemoryNeededCoversTheImagesAndTheState) {
+  const auto backend = MakeCpuBackend("scalar", 1);
+  const uint64_t pixels = 1000 * 1000;
+  // At least a texel per source pixel, and plane, cost and mask per pixel.
+  EXPECT_GE(backend->MemoryNeeded(1000, 1000, 10), pixels * (40 + 24));
+  EXPECT_GT(backend->MemoryNeeded(40000, 30000, 1), 1ull << 32);
+}
+
+TEST_F(CpuBackendTest, CancelledTokenInterruptsBeforeAnyWork) {
+  cancel_.Cancel();
+  try {
+    RunAll(2);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::kInterrupted);
+  }
+}
+
+TEST_F(CpuBackendTest, CancellingStopsALongRunPromptly) {
+  const auto backend = MakeCpuBackend("auto", 2);
+  backend->SetViews(views_, MethodParams());
+  HypothesisMap map(kWidth, kHeight);
+  Pass endless = kBasic;
+  endless.num_iterations = 1000000;
+  using Clock = std::chrono::steady_clock;
+  std::atomic<Clock::rep> cancelled_at{0};
+  std::thread canceller([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    cancelled_at = Clock::now().time_since_epoch().count();
+    cancel_.Cancel();
+  });
+  ErrorCode code = ErrorCode::kFailure;
+  try {
+    backend->Run(endless, pattern_, &map, control_);
+  } catch (const Error& error) {
+    code = error.code();
+  }
+  const auto stopped_at = Clock::now().time_since_epoch().count();
+  canceller.join();
+  EXPECT_EQ(code, ErrorCode::kInterrupted);
+  const Clock::duration took(stopped_at - cancelled_at);
+  // A row takes milliseconds; the rest is for a busy machine and sanitizers.
+  EXPECT_LT(std::chrono::duration<double>(took).count(), 2);
+}
+
+}  // namespace
+}  // namespace hpm

@@ -1,0 +1,222 @@
+#include "src/base/error.h"
+#include "src/cpu/cpu_views.h"
+#include "tests/cpu/scene_views.h"
+
+#include <cmath>
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace hpm {
+namespace {
+
+// Sums of 36 products in another order and with fused multiply-adds; positions
+// differ in the last digit, which moves a sample by less than 1e-4 pixels.
+constexpr float kTolerance = 2e-3f;
+SceneOptions Options(int num_views) {
+  SceneOptions options;
+  options.num_views = num_views;
+  options.width = 60;
+  options.height = 44;
+  options.quarter_turns = {0, 0, 1, 2, 0, 3};
+  return options;
+}
+
+struct Comparison {
+  int num_pairs = 0;
+  int num_visible = 0;
+  float largest = 0;
+  int num_visibility_differs = 0;  // one says kMaxCost, the other does not
+};
+
+// All targets against the scalar one for `planes` in `views` at one pixel.
+void Compare(const CpuTarget& target,
+             const CpuViews& cpu_views,
+             int col,
+             int row,
+             const std::vector<Plane>& planes,
+             const std::vector<uint8_t>& views,
+             Comparison* result) {
+  const RefPatch patch = cpu_views.PatchAt(col, row);
+  const int num_planes = static_cast<int>(planes.size());
+  const int num_views = static_cast<int>(views.size());
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  std::vector<float> expected(planes.size() * views.size() + 1, nan);
+  std::vector<float> actual = expected;
+  FindCpuTarget("scalar").match_cost(cpu_views.match(),
+                                     patch,
+                                     col,
+                                     row,
+                                     planes.data(),
+                                     num_planes,
+                                     views.data(),
+                                     num_views,
+                                     expected.data());
+  target.match_cost(cpu_views.match(),
+                    patch,
+                    col,
+                    row,
+                    planes.data(),
+                    num_planes,
+                    views.data(),
+                    num_views,
+                    actual.data());
+  EXPECT_TRUE(std::isnan(actual.back()));  // written behind the last pair
+  for (size_t i = 0; i + 1 < actual.size(); ++i) {
+    ASSERT_GE(actual[i], 0);  // false for NaN
+    ASSERT_LE(actual[i], kMaxCost);
+    ++result->num_pairs;
+    result->num_visible += expected[i] < kMaxCost;
+    const float difference = std::abs(actual[i] - expected[i]);
+    if ((actual[i] == kMaxCost) != (expected[i] == kMaxCost) &&
+        difference > kTolerance) {
+      ++result->num_visibility_differs;
+    } else {
+      result->largest = std::fmax(result->largest, difference);
+    }
+  }
+}
+
+void ExpectAgreement(const Comparison& result) {
+  EXPECT_LT(result.largest, kTolerance);
+  // A centre exactly on the border of the source image may fall on either side.
+  EXPECT_LE(result.num_visibility_differs, result.num_pairs / 2000);
+}
+
+class EveryTarget : public testing::TestWithParam<CpuTarget> {};
+INSTANTIATE_TEST_SUITE_P(CpuTargets,
+                         EveryTarget,
+                         testing::ValuesIn(CpuTargets()),
+                         [](const auto& test) { return test.param.name; });
+
+TEST_P(EveryTarget, AgreesWithTheScalarCostOnRenderedScenes) {
+  Comparison result;
+  std::mt19937 random(1);
+  for (const char* name : {"sphere", "depth_step", "low_texture_wall"}) {
+    const std::vector<RenderedView> rendered =
+        RenderViews(MakeScene(name, Options(8)), 1);
+    const CpuViews cpu_views(AsViewSet(rendered), MethodParams());
+    const std::vector<uint8_t> views = {0, 1, 2, 3, 4, 5, 6};
+    for (int row = 0; row < 44; row += 3) {
+      for (int col = 0; col < 60; col += 3) {
+        std::vector<Plane> planes;
+        for (int i = 0; i < 5; ++i) {
+          planes.push_back(SomeHypothesis(rendered[0], col, row, &random));
+        }
+        Compare(GetParam(), cpu_views, col, row, planes, views, &result);
+      }
+    }
+  }
+  EXPECT_GT(result.num_pairs, 30000);
+  EXPECT_GT(result.num_visible, 10000);
+  EXPECT_LT(result.num_visible, result.num_pairs);
+  ExpectAgreement(result);
+}
+
+// Any number of planes and of views, so that vectors are filled in every way,
+// and views in any order.
+TEST_P(EveryTarget, AgreesForEveryNumberOfPlanesAndViews) {
+  const std::vector<RenderedView> rendered =
+      RenderViews(MakeScene("sphere", Options(8)), 1);
+  // 32 views, the limit: each source several times.
+  ViewSet set = AsViewSet(rendered);
+  for (int i = 7; i < kMaxViews; ++i) set.srcs.push_back(set.srcs[i % 7]);
+  const CpuViews cpu_views(set, MethodParams());
+  Comparison result;
+  std::mt19937 random(2);
+  for (int num_planes = 1; num_planes <= kNumRegions; ++num_planes) {
+    for (int num_views = 1; num_views <= kMaxViews; ++num_views) {
+      std::vector<Plane> planes;
+      for (int i = 0; i < num_planes; ++i) {
+        planes.push_back(SomeHypothesis(rendered[0], 30, 20, &random));
+      }
+      std::vector<uint8_t> views;
+      for (int j = 0; j < num_views; ++j) {
+        views.push_back(static_cast<uint8_t>(random() % kMaxViews));
+      }
+      Compare(GetParam(), cpu_views, 30, 20, planes, views, &result);
+    }
+  }
+  ExpectAgreement(result);
+}
+
+// Narrow and low images: every sample is near a border.
+TEST_P(EveryTarget, AgreesForSourceImagesOfAnySize) {
+  const std::vector<RenderedView> rendered =
+      RenderViews(MakeScene("tilted_plane", Options(3)), 1);
+  const ViewSet full = AsViewSet(rendered);
+  Comparison result;
+  std::mt19937 random(3);
+  for (int width = 1; width <= 33; ++width) {
+    const int height = 1 + width * 7 % 23;
+    ViewSet set = full;
+    set.srcs[0] = Cropped(full.srcs[0], 13, 11, width, height);
+    set.srcs[1] = Cropped(full.srcs[1], 20, 9, height, width);
+    const CpuViews cpu_views(set, MethodParams());
+    for (int i = 0; i < 80; ++i) {
+      const int col = static_cast<int>(random() % 60);
+      const int row = static_cast<int>(random() % 44);
+      const std::vector<Plane> planes = {
+          SomeHypothesis(rendered[0], col, row, &random),
+          SomeHypothesis(rendered[0], col, row, &random),
+          SomeHypothesis(rendered[0], col, row, &random)};
+      Compare(GetParam(), cpu_views, col, row, planes, {0, 1}, &result);
+    }
+  }
+  EXPECT_GT(result.num_visible, 500);
+  ExpectAgreement(result);
+}
+
+TEST_P(EveryTarget, NonsensePlanesCostTheMaximum) {
+  const std::vector<RenderedView> rendered =
+      RenderViews(MakeScene("tilted_plane", Options(3)), 1);
+  const CpuViews cpu_views(AsViewSet(rendered), MethodParams());
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const float inf = std::numeric_limits<float>::infinity();
+  const std::vector<Plane> planes = {{{nan, nan, nan}, nan},
+                                     {{0, 0, -1}, nan},
+                                     {{0, 0, 0}, 0},
+                                     {{0, 0, -1}, 0},
+                                     {{inf, 0, -1}, 1},
+                                     {{0, 0, -1}, 1e-38f},
+                                     {{0, 0, -1}, -5}};
+  const std::vector<uint8_t> views = {0, 1};
+  std::vector<float> costs(planes.size() * 2);
+  GetParam().match_cost(cpu_views.match(),
+                        cpu_views.PatchAt(30, 20),
+                        30,
+                        20,
+                        planes.data(),
+                        static_cast<int>(planes.size()),
+                        views.data(),
+                        2,
+                        costs.data());
+  EXPECT_THAT(costs, testing::Each(kMaxCost));
+}
+
+TEST(CpuTargets, EndWithScalarAndHaveDistinctNames) {
+  const std::vector<CpuTarget> targets = CpuTargets();
+  ASSERT_FALSE(targets.empty());
+  EXPECT_EQ(targets.back().name, "scalar");
+  for (size_t i = 0; i < targets.size(); ++i) {
+    for (size_t j = 0; j < i; ++j) EXPECT_NE(targets[i].name, targets[j].name);
+    EXPECT_EQ(FindCpuTarget(targets[i].name).match_cost, targets[i].match_cost);
+  }
+  EXPECT_EQ(FindCpuTarget("auto").name, targets.front().name);
+}
+
+TEST(CpuTargets, UnknownNameIsAnErrorThatListsTheNames) {
+  try {
+    FindCpuTarget("pdp11");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::kUsage);
+    for (const CpuTarget& target : CpuTargets()) {
+      EXPECT_THAT(error.what(), testing::HasSubstr(target.name));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace hpm

@@ -1,0 +1,146 @@
+#include "src/engine/schedule.h"
+
+#include "src/base/error.h"
+
+#include <cstdlib>
+#include <set>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace hpm {
+namespace {
+
+ScheduleOptions Options(const std::string& method, int num_levels = 3) {
+  ScheduleOptions options;
+  options.method = method;
+  options.num_iterations = 4;
+  options.num_geom_iterations = 2;
+  options.num_geom_passes = 2;
+  options.num_levels = num_levels;
+  return options;
+}
+
+class EveryMethod : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Methods,
+                         EveryMethod,
+                         testing::ValuesIn(MethodNames()),
+                         [](const auto& test) { return test.param; });
+
+// Else two passes would draw the same random numbers.
+TEST_P(EveryMethod, PassesHaveDistinctIds) {
+  std::set<int> ids;
+  size_t num_passes = 0;
+  for (const StageSpec& stage : MakeSchedule(Options(GetParam())).stages) {
+    for (const Pass& pass : stage.passes) ids.insert(pass.id);
+    num_passes += stage.passes.size();
+  }
+  EXPECT_EQ(ids.size(), num_passes);
+}
+
+TEST_P(EveryMethod, StartsRandomOnceAndEndsAtFullSize) {
+  const Schedule schedule = MakeSchedule(Options(GetParam()));
+  int num_random = 0;
+  for (const StageSpec& stage : schedule.stages) {
+    for (const Pass& pass : stage.passes) {
+      num_random += pass.start == StartFrom::kRandom;
+    }
+  }
+  EXPECT_EQ(num_random, 1);
+  EXPECT_EQ(schedule.stages[0].passes[0].start, StartFrom::kRandom);
+  EXPECT_FALSE(schedule.stages[0].from_coarser);
+  EXPECT_EQ(schedule.stages.back().level, 0);
+}
+
+TEST_P(EveryMethod, GeometricStagesFollowAStageOfTheirLevel) {
+  const Schedule schedule = MakeSchedule(Options(GetParam()));
+  for (size_t s = 0; s < schedule.stages.size(); ++s) {
+    const StageSpec& stage = schedule.stages[s];
+    for (const Pass& pass : stage.passes) {
+      EXPECT_EQ(pass.kind == PassKind::kGeometric, stage.geometric);
+      EXPECT_EQ(pass.num_iterations, stage.geometric ? 2 : 4);
+      EXPECT_EQ(pass.kind == PassKind::kPrior, pass.start == StartFrom::kPrior);
+    }
+    if (s == 0) {
+      EXPECT_FALSE(stage.geometric);
+    } else if (stage.from_coarser) {
+      EXPECT_EQ(stage.level, schedule.stages[s - 1].level - 1);
+    } else {
+      EXPECT_TRUE(stage.geometric);
+      EXPECT_EQ(stage.level, schedule.stages[s - 1].level);
+    }
+  }
+}
+
+TEST_P(EveryMethod, WithoutGeometricPassesThereAreNoGeometricStages) {
+  ScheduleOptions options = Options(GetParam());
+  options.num_geom_passes = 0;
+  for (const StageSpec& stage : MakeSchedule(options).stages) {
+    EXPECT_FALSE(stage.geometric);
+  }
+}
+
+// Levels of the prior passes at full size, in order.
+std::vector<int> PriorLevels(const std::string& method, int num_levels) {
+  std::vector<int> levels;
+  const StageSpec first = MakeSchedule(Options(method, num_levels)).stages[0];
+  for (const Pass& pass : first.passes) {
+    if (pass.kind == PassKind::kPrior) levels.push_back(pass.level);
+  }
+  return levels;
+}
+
+TEST(Schedule, HpmBuildsPriorsFromCoarseToFine) {
+  EXPECT_THAT(PriorLevels("hpm", 3), testing::ElementsAre(2, 1, 0));
+  EXPECT_THAT(PriorLevels("hpm", 1), testing::ElementsAre(0));
+}
+
+TEST(Schedule, HpmFastBuildsTheCoarsestPriorOnly) {
+  EXPECT_THAT(PriorLevels("hpm_fast", 3), testing::ElementsAre(2));
+  EXPECT_THAT(PriorLevels("hpm_fast", 1), testing::ElementsAre(0));
+}
+
+TEST(Schedule, NespHasNoPriors) {
+  EXPECT_THAT(PriorLevels("nesp", 3), testing::IsEmpty());
+}
+
+// Sampling of the paper's ablation rows: N = nothing near, E = growing regions.
+TEST(Schedule, AblationRowsSwitchTheSamplingPattern) {
+  const auto near = [](const std::string& method) {
+    const SamplingPattern p = MakeSchedule(Options(method)).pattern;
+    return std::abs(p.dcol[0][0]) + std::abs(p.drow[0][0]) < 5;
+  };
+  const auto grows = [](const std::string& method) {
+    return MakeSchedule(Options(method)).pattern.max_extensions > 0;
+  };
+  EXPECT_TRUE(near("acmh") && !grows("acmh"));
+  EXPECT_TRUE(!near("nsp") && !grows("nsp"));
+  EXPECT_TRUE(near("esp") && grows("esp"));
+  EXPECT_TRUE(!near("nesp") && grows("nesp"));
+  EXPECT_TRUE(!near("hpm") && grows("hpm"));
+  EXPECT_TRUE(near("hpm_no_nesp") && !grows("hpm_no_nesp"));
+}
+
+TEST(Schedule, UnknownMethodIsAnErrorThatListsTheMethods) {
+  try {
+    MakeSchedule(Options("sgm"));
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::kUsage);
+    EXPECT_THAT(error.what(), testing::HasSubstr("sgm"));
+    for (const std::string& name : MethodNames()) {
+      EXPECT_THAT(error.what(), testing::HasSubstr(name));
+    }
+  }
+}
+
+// Specification 1.2: halvings until the longer side is at most 1000.
+TEST(AutomaticLevels, FollowTheLongerSide) {
+  EXPECT_EQ(AutomaticLevels(1), 1);
+  EXPECT_EQ(AutomaticLevels(1000), 1);
+  EXPECT_EQ(AutomaticLevels(1920), 2);
+  EXPECT_EQ(AutomaticLevels(3200), 3);
+}
+
+}  // namespace
+}  // namespace hpm
