@@ -1,4 +1,5 @@
-"""Signals, two runs on one workspace, folders that cannot be written, full disks."""
+"""Signals, two runs on one workspace, folders that cannot be written, full disks, too
+little memory."""
 import os
 import resource
 import shutil
@@ -7,6 +8,7 @@ import subprocess
 import time
 import unittest
 
+from sparse_patch import set_camera_sizes
 from support import FAST, SLOW, CliTest
 
 NOBODY = 65534
@@ -43,7 +45,7 @@ class Locking(CliTest):
         self.assert_rerun_completes(workspace)
 
 
-class Disks(CliTest):
+class Resources(CliTest):
     def test_a_file_size_limit_is_exit_5_and_leaves_nothing_partial(self):
         workspace = self.workspace()
         limit = 60000  # a depth map of 96x72 fits, a normal map does not
@@ -54,6 +56,26 @@ class Disks(CliTest):
         )
         self.assert_exit(result, 5, "normal_maps/view00.png.photometric.bin")
         self.assert_no_partial_files(workspace)
+        self.assert_rerun_completes(workspace)
+
+    def test_too_little_memory_is_exit_5_before_anything_is_computed(self):
+        workspace = self.workspace()
+        # Without the image files the sizes of the model count.
+        set_camera_sizes(workspace / "sparse/cameras.bin", 8000, 6000)
+        for image in (workspace / "images").iterdir():
+            image.rename(workspace / image.name)
+        limit = 2 << 30
+        result = self.run_tool(
+            workspace,
+            *FAST,
+            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)),
+        )
+        self.assert_exit(result, 5, "--PatchMatchStereo.max_image_size")
+        self.assertNotIn("Processing view", result.stdout)
+        self.assert_no_partial_files(workspace)
+        for image in workspace.glob("*.png"):
+            image.rename(workspace / "images" / image.name)
+        set_camera_sizes(workspace / "sparse/cameras.bin", 96, 72)
         self.assert_rerun_completes(workspace)
 
     @unittest.skipUnless(os.geteuid() == 0, "mounting a small disk needs root")

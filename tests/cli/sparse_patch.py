@@ -43,6 +43,14 @@ def set_camera_value(path, camera, index, value):
     path.write_bytes(data)
 
 
+def set_camera_sizes(path, width, height):
+    """Of all cameras, which must have four parameters each."""
+    data = bytearray(path.read_bytes())
+    for camera in range(struct.unpack_from("<Q", data, 0)[0]):
+        struct.pack_into("<QQ", data, 8 + 56 * camera + 8, width, height)
+    path.write_bytes(data)
+
+
 def remove_points(folder):
     """No sparse points at all, and no observations of them."""
     (folder / "points3D.bin").write_bytes(struct.pack("<Q", 0))
