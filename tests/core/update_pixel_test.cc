@@ -176,7 +176,7 @@ TEST_F(UpdatePixelTest, PixelThatNoViewSeesStaysFinite) {
 // pixel with a prior by one of the refinements.
 TEST_F(UpdatePixelTest, ConvergedPlaneOnItsPriorIsLeftAlone) {
   const Plane truth = {{0, 0, -1}, kTrueDepth};
-  planes_.assign(planes_.size(), truth);
+  Here() = truth;
   priors_.assign(priors_.size(), truth);
   for (uint64_t key = 0; key < 100; ++key) {
     Visit(wall_, key, true);

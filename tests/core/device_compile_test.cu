@@ -1,0 +1,106 @@
+// Compiled, not run: the decisions of src/core stay device code. A kernel
+// visits pixels with the scalar matching cost, as a CUDA backend would with
+// textures.
+#include "src/core/consistency_filter.h"
+#include "src/core/initialize_pixel.h"
+#include "src/core/match_cost.h"
+#include "src/core/median_filter.h"
+#include "src/core/update_pixel.h"
+
+namespace hpm {
+
+struct DeviceViews {
+  Camera ref;
+  const unsigned char* ref_image;
+  const unsigned char* const* src_images;
+  const float* const* inverse_depths;
+  const ViewWarp* to_src;
+  const ViewWarp* to_ref;
+  PatchShape shape;
+};
+
+struct DeviceCost {
+  const DeviceViews& views;
+  RefPatch patch;
+  int col, row;
+
+  __device__ DeviceCost(const DeviceViews& v, int c, int r)
+      : views(v), col(c), row(r) {
+    patch = MakeRefPatch(
+        v.shape,
+        [&](int x, int y) {
+          return static_cast<float>(v.ref_image[y * v.ref.width + x]);
+        },
+        [&](float d) { return expf(-d * v.shape.color_falloff); },
+        c,
+        r);
+  }
+
+  __device__ void Photometric(const Plane* planes,
+                              int num_planes,
+                              const uint8_t* chosen,
+                              int num_views,
+                              float* costs) const {
+    for (int i = 0; i < num_planes; ++i) {
+      const PlaneSlope slope = SlopeOf(views.ref, planes[i]);
+      for (int k = 0; k < num_views; ++k) {
+        const ViewWarp& warp = views.to_src[chosen[k]];
+        const unsigned char* image = views.src_images[chosen[k]];
+        costs[i * num_views + k] = MatchCost(
+            views.shape,
+            patch,
+            WarpPatch(
+                warp, slope, static_cast<float>(col), static_cast<float>(row)),
+            [&](float u, float v) {
+              return static_cast<float>(image[static_cast<int>(v) * warp.width +
+                                              static_cast<int>(u)]);
+            },
+            warp.width,
+            warp.height);
+      }
+    }
+  }
+
+  __device__ float GeometricError(const Plane& plane, int view) const {
+    const float* inverse_depth = views.inverse_depths[view];
+    const int width = views.to_src[view].width;
+    const int height = views.to_src[view].height;
+    return ReprojectionError(
+        views.to_src[view],
+        views.to_ref[view],
+        SlopeOf(views.ref, plane),
+        static_cast<float>(col),
+        static_cast<float>(row),
+        5.0f,
+        [&](float u, float v) {
+          return InterpolateInverseDepth(
+              [&](int c, int r) { return inverse_depth[r * width + c]; },
+              width,
+              height,
+              u,
+              v);
+        });
+  }
+};
+
+__global__ void VisitPixels(VisitParams params,
+                            const SamplingPattern* pattern,
+                            PixelState state,
+                            DeviceViews views,
+                            FilterParams filter,
+                            const Vec3f* src_centers,
+                            uint32_t* consistent) {
+  const int col = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
+  const int row = static_cast<int>(blockIdx.y * blockDim.y + threadIdx.y);
+  if (col >= state.width || row >= state.height) return;
+  const DeviceCost cost(views, col, row);
+  Rng rng(1, col, row);
+  InitializePixel(params, state, StartFrom::kRandom, cost, &rng, col, row);
+  UpdatePixel(params, *pattern, state, cost, &rng, 0, col, row);
+  MedianFilterPixel(params.ref, state, col, row);
+  const int at = row * state.width + col;
+  consistent[at] = ConsistentViews(
+      params, filter, src_centers, cost, state.planes[at], col, row);
+}
+
+}  // namespace hpm
