@@ -12,6 +12,8 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 namespace hpm {
 namespace {
 
@@ -99,6 +101,7 @@ ViewSet StageRunner::MakeViews(int stage, int problem) {
   views.depth_max = kDepthMaxSlack * p.depth_max;
   views.random_key = RandomKey(options_.random_seed, name);
   src_images_.clear();
+  int num_without_maps = 0;
   for (const int src : p.src_images) {
     View view = {
         plan_.CameraOf(stage, src), inputs_->Image(src, level), nullptr};
@@ -106,15 +109,20 @@ ViewSet StageRunner::MakeViews(int stage, int problem) {
     if (plan_.stages()[stage].spec.geometric) {
       view.inverse_depth =
           inputs_->InverseDepth(src, view.camera, plan_.Files(stage - 1, src));
-      if (view.inverse_depth == nullptr) {
-        log_(LogLevel::kWarning,
-             name + ": source " + workspace_.ImageName(src) + " has no " +
-                 plan_.stages()[stage - 1].name +
-                 " maps and is used without geometric consistency");
-      }
+      if (view.inverse_depth == nullptr) ++num_without_maps;
     }
     views.srcs.push_back(std::move(view));
     src_images_.push_back(src);
+  }
+  if (num_without_maps > 0) {
+    log_(LogLevel::kWarning,
+         fmt::format("{}: {} of {} sources have no {} maps (no entry of their "
+                     "own in patch-match.cfg?) and take part without geometric "
+                     "consistency",
+                     name,
+                     num_without_maps,
+                     views.srcs.size(),
+                     plan_.stages()[stage - 1].name));
   }
   if (views.srcs.empty()) {
     throw Error(ErrorCode::kBadInput,
