@@ -90,7 +90,7 @@ RunSummary PatchMatchController::Run() {
   log_(LogLevel::kInfo,
        fmt::format("Configuration has {} problems...", problems.size()));
 
-  if (options_.hpm.num_levels < 0) {
+  if (options_.hpm.num_levels <= 0) {
     options_.hpm.num_levels = LevelsOf(workspace, problems);
   }
   const Schedule schedule = MakeSchedule(MakeScheduleOptions(options_));

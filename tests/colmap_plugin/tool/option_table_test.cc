@@ -243,7 +243,7 @@ const std::vector<Values>& ValueTable() {
       {"Hpm.num_geom_passes", {"1", "2"}, {"0"}, ">= 1"},
       {"Hpm.geom_weight", {"0", "0.1"}, {"-0.1", "nan"}, ">= 0"},
       {"Hpm.geom_max_error", {"0", "5"}, {"-1"}, ">= 0"},
-      {"Hpm.num_levels", {"-1", "3"}, {"-2", "1.5"}, ">= -1"},
+      {"Hpm.num_levels", {"-1", "8"}, {"-2", "9", "1.5"}, "-1 to 8"},
       bools("Hpm.previews"),
       bools("Hpm.overwrite"),
   };
