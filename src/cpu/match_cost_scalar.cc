@@ -1,0 +1,52 @@
+#include "src/cpu/match_cost_scalar.h"
+
+#include <cstddef>
+
+namespace hpm {
+
+void ScalarMatchCosts(const MatchViews& match,
+                      const RefPatch& patch,
+                      int col,
+                      int row,
+                      const Plane* planes,
+                      int num_planes,
+                      const uint8_t* views,
+                      int num_views,
+                      float* costs) {
+  for (int p = 0; p < num_planes; ++p) {
+    const PlaneSlope slope = SlopeOf(match.ref, planes[p]);
+    for (int k = 0; k < num_views; ++k) {
+      const int view = views[k];
+      ViewWarp warp;
+      for (int i = 0; i < 9; ++i) warp.M.m[i] = match.M[i][view];
+      warp.v = {match.v[0][view], match.v[1][view], match.v[2][view]};
+      const uint32_t* texels = match.texels + match.offset[view];
+      const auto sample = [&](float u, float v) {
+        const float cu = Clamp(u, 0.0f, match.max_u[view]);
+        const float cv = Clamp(v, 0.0f, match.max_v[view]);
+        const int iu = static_cast<int>(cu), iv = static_cast<int>(cv);
+        const float fu = cu - static_cast<float>(iu),
+                    fv = cv - static_cast<float>(iv);
+        const uint32_t texel =
+            texels[static_cast<size_t>(iv) * match.stride[view] + iu];
+        const float p00 = static_cast<float>(texel & 255),
+                    p01 = static_cast<float>(texel >> 8 & 255);
+        const float p10 = static_cast<float>(texel >> 16 & 255),
+                    p11 = static_cast<float>(texel >> 24);
+        const float top = p00 + fu * (p01 - p00),
+                    bottom = p10 + fu * (p11 - p10);
+        return top + fv * (bottom - top);
+      };
+      costs[p * num_views + k] = MatchCost(
+          match.shape,
+          patch,
+          WarpPatch(
+              warp, slope, static_cast<float>(col), static_cast<float>(row)),
+          sample,
+          static_cast<int>(match.max_u[view]) + 1,
+          static_cast<int>(match.max_v[view]) + 1);
+    }
+  }
+}
+
+}  // namespace hpm

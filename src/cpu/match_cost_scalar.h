@@ -1,0 +1,20 @@
+// The matching cost of src/core/match_cost.h as it stands there, one pair at a
+// time: the reference for all SIMD targets, and a target of its own.
+#pragma once
+
+#include "src/cpu/match_cost.h"
+
+namespace hpm {
+
+// See MatchCostFunction.
+void ScalarMatchCosts(const MatchViews& match,
+                      const RefPatch& patch,
+                      int col,
+                      int row,
+                      const Plane* planes,
+                      int num_planes,
+                      const uint8_t* views,
+                      int num_views,
+                      float* costs);
+
+}  // namespace hpm
