@@ -15,9 +15,11 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
+#include <tbb/global_control.h>
 
 namespace hpm {
 namespace {
@@ -76,6 +78,12 @@ PatchMatchController::PatchMatchController(const ControllerOptions& options,
 
 RunSummary PatchMatchController::Run() {
   const auto start = std::chrono::steady_clock::now();
+  // For what runs outside the backend, such as the upsampling of priors.
+  std::optional<tbb::global_control> thread_limit;
+  if (options_.patch_match.num_threads > 0) {
+    thread_limit.emplace(tbb::global_control::max_allowed_parallelism,
+                         static_cast<size_t>(options_.patch_match.num_threads));
+  }
   const std::unique_ptr<Backend> backend =
       MakeCpuBackend(options_.hpm.cpu_target, options_.patch_match.num_threads);
 

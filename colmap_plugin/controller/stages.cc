@@ -61,6 +61,7 @@ void AddMethod(const MethodParams& params, Fingerprint* hash) {
                         params.sigma_color,
                         params.depth_perturbation,
                         params.normal_perturbation,
+                        params.same_plane_bound,
                         params.prior_gamma,
                         params.prior_beta,
                         params.prior_depth_share,

@@ -17,9 +17,9 @@ struct Candidates {
   float matrix[kNumRegions * kMaxViews];  // [region * num_views + view]
 };
 
-// Whether two planes move no sample of the patch by more than the bound in any
-// source view: then they share one row of costs. Converged neighbourhoods hold
-// many copies and near copies of one plane.
+// Whether two planes put the samples of the patch less than the bound apart, to
+// first order and for a source camera at the distance of the reference: then
+// they share one row of costs. Converged neighbourhoods hold copies of planes.
 HPM_HD bool NearlySame(const VisitParams& params,
                        const PlaneSlope& a,
                        const PlaneSlope& b,
@@ -35,7 +35,7 @@ HPM_HD bool NearlySame(const VisitParams& params,
 }
 
 // Best sample among offsets [begin, end) of a region, -1 if none is inside the
-// image or better than *best_cost. A walk ends at the border.
+// image or better than *best_cost.
 HPM_HD int BestSample(const SamplingPattern& pattern,
                       const PixelState& state,
                       int region,

@@ -35,7 +35,7 @@ class Rng {
     return static_cast<float>(MixBits(state_) >> 40) * (1.0f / 16777216.0f);
   }
 
-  // Uniform in [lo, hi).
+  // Uniform in [lo, hi), up to rounding.
   HPM_HD_MEMBER float Uniform(float lo, float hi) {
     return lo + (hi - lo) * Uniform();
   }
