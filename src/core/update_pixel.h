@@ -41,25 +41,6 @@ HPM_HD void ViewProbabilities(const VisitParams& params,
   }
 }
 
-// Cost of a plane whose photometric costs in all views are known.
-template <class Cost>
-HPM_HD float WeightedRow(const VisitParams& params,
-                         const Cost& cost,
-                         const ViewWeights& weights,
-                         const Plane& plane,
-                         const float* row_of_costs) {
-  float sum = 0;
-  for (int k = 0; k < weights.num_views; ++k) {
-    float c = row_of_costs[weights.view[k]];
-    if (params.geometric) {
-      c += params.geometric_term.weight *
-           cost.GeometricError(plane, weights.view[k]);
-    }
-    sum += weights.weight[k] * c;
-  }
-  return sum / weights.weight_sum;
-}
-
 // Higher is better; without a prior the order of the costs decides.
 struct Ranking {
   const VisitParams* params;
@@ -112,14 +93,12 @@ HPM_HD void UpdatePixel(const VisitParams& params,
   if (candidates.current != 0) {
     int same = 0;
     while (!(candidates.current >> same & 1)) ++same;
-    best_cost = WeightedRow(params,
-                            cost,
-                            weights,
-                            best,
-                            &candidates.matrix[same * params.num_views]);
+    best_cost = WeightedMean(
+        weights, &candidates.matrix[same * params.num_views], true);
   } else {
-    WeightedCosts(params, cost, weights, &best, 1, &best_cost);
+    PhotometricCosts(cost, weights, &best, 1, &best_cost);
   }
+  best_cost += GeometricCost(params, cost, weights, best);
   float depth = -best.distance / Dot(best.normal, ray);
   float best_rank = rank(best_cost, depth, best.normal);
   bool propagated = false;
@@ -130,8 +109,11 @@ HPM_HD void UpdatePixel(const VisitParams& params,
     const Plane& plane = candidates.plane[i];
     const float z = -plane.distance / Dot(plane.normal, ray);
     if (!(z >= params.depth_min && z <= params.depth_max)) continue;
-    const float candidate_cost = WeightedRow(
-        params, cost, weights, plane, &candidates.matrix[i * params.num_views]);
+    float candidate_cost =
+        WeightedMean(weights, &candidates.matrix[i * params.num_views], true);
+    // The geometric term can only add to the cost.
+    if (!(rank(candidate_cost, z, plane.normal) > best_rank)) continue;
+    candidate_cost += GeometricCost(params, cost, weights, plane);
     const float candidate_rank = rank(candidate_cost, z, plane.normal);
     if (candidate_rank > best_rank) {
       best = plane;
@@ -170,10 +152,12 @@ HPM_HD void UpdatePixel(const VisitParams& params,
                     z_perturbed,
                     n_perturbed,
                     refined);
-  WeightedCosts(params, cost, weights, refined, kNumRefined, refined_cost);
+  PhotometricCosts(cost, weights, refined, kNumRefined, refined_cost);
   for (int i = 0; i < kNumRefined; ++i) {
     const float z = -refined[i].distance / Dot(refined[i].normal, ray);
     if (!(z >= params.depth_min && z <= params.depth_max)) continue;
+    if (!(rank(refined_cost[i], z, refined[i].normal) > best_rank)) continue;
+    refined_cost[i] += GeometricCost(params, cost, weights, refined[i]);
     const float refined_rank = rank(refined_cost[i], z, refined[i].normal);
     if (refined_rank > best_rank) {
       best = refined[i];

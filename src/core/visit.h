@@ -38,29 +38,46 @@ struct VisitParams {
 // k of the best-k mean at initialisation (paper section 3).
 constexpr int kNumInitialViews = 4;
 
-// Costs of several planes over the drawn views, weighted; the batch goes
-// through the backend at once.
+// Photometric cost of a plane: mean over the drawn views, weighted.
+// costs[k] belongs to weights.view[k], or costs[view] to each view.
+HPM_HD float WeightedMean(const ViewWeights& weights,
+                          const float* costs,
+                          bool indexed_by_view) {
+  float sum = 0;
+  for (int k = 0; k < weights.num_views; ++k) {
+    sum += weights.weight[k] * costs[indexed_by_view ? weights.view[k] : k];
+  }
+  return sum / weights.weight_sum;
+}
+
+// Photometric costs of several planes; the batch goes through the backend at
+// once.
 template <class Cost>
-HPM_HD void WeightedCosts(const VisitParams& params,
-                          const Cost& cost,
-                          const ViewWeights& weights,
-                          const Plane* planes,
-                          int num_planes,
-                          float* result) {
+HPM_HD void PhotometricCosts(const Cost& cost,
+                             const ViewWeights& weights,
+                             const Plane* planes,
+                             int num_planes,
+                             float* result) {
   float costs[kNumRegions * kMaxViews];
   cost.Photometric(planes, num_planes, weights.view, weights.num_views, costs);
   for (int i = 0; i < num_planes; ++i) {
-    float sum = 0;
-    for (int k = 0; k < weights.num_views; ++k) {
-      float c = costs[i * weights.num_views + k];
-      if (params.geometric) {
-        c += params.geometric_term.weight *
-             cost.GeometricError(planes[i], weights.view[k]);
-      }
-      sum += weights.weight[k] * c;
-    }
-    result[i] = sum / weights.weight_sum;
+    result[i] = WeightedMean(weights, &costs[i * weights.num_views], false);
   }
+}
+
+// What the geometric term adds to the cost of a plane, never negative; 0 in
+// photometric passes.
+template <class Cost>
+HPM_HD float GeometricCost(const VisitParams& params,
+                           const Cost& cost,
+                           const ViewWeights& weights,
+                           const Plane& plane) {
+  if (!params.geometric) return 0;
+  float sum = 0;
+  for (int k = 0; k < weights.num_views; ++k) {
+    sum += weights.weight[k] * cost.GeometricError(plane, weights.view[k]);
+  }
+  return params.geometric_term.weight * sum / weights.weight_sum;
 }
 
 }  // namespace hpm
