@@ -11,6 +11,8 @@
 #include "src/prior/upsample_prior.h"
 
 #include <algorithm>
+#include <filesystem>
+#include <system_error>
 
 #include <fmt/format.h>
 
@@ -101,26 +103,33 @@ ViewSet StageRunner::MakeViews(int stage, int problem) {
   views.depth_max = kDepthMaxSlack * p.depth_max;
   views.random_key = RandomKey(options_.random_seed, name);
   src_images_.clear();
-  int num_without_maps = 0;
+  num_without_maps_ = 0;
+  misses_maps_ = false;
   for (const int src : p.src_images) {
     View view = {
         plan_.CameraOf(stage, src), inputs_->Image(src, level), nullptr};
     if (view.image == nullptr) continue;
     if (plan_.stages()[stage].spec.geometric) {
-      view.inverse_depth =
-          inputs_->InverseDepth(src, view.camera, plan_.Files(stage - 1, src));
-      if (view.inverse_depth == nullptr) ++num_without_maps;
+      if (plan_.HasCurrentMaps(stage - 1, src)) {
+        view.inverse_depth = inputs_->InverseDepth(
+            src, view.camera, plan_.Files(stage - 1, src));
+      }
+      if (view.inverse_depth == nullptr) ++num_without_maps_;
+      if (plan_.IsReference(src) && (view.inverse_depth == nullptr ||
+                                     !plan_.HasCompleteMaps(stage - 1, src))) {
+        misses_maps_ = true;
+      }
     }
     views.srcs.push_back(std::move(view));
     src_images_.push_back(src);
   }
-  if (num_without_maps > 0) {
+  if (num_without_maps_ > 0) {
     log_(LogLevel::kWarning,
          fmt::format("{}: {} of {} sources have no {} maps (no entry of their "
                      "own in patch-match.cfg?) and take part without geometric "
                      "consistency",
                      name,
-                     num_without_maps,
+                     num_without_maps_,
                      views.srcs.size(),
                      plan_.stages()[stage - 1].name));
   }
@@ -169,9 +178,13 @@ void StageRunner::Publish(int stage,
   if (filter) {
     PhaseTimer timer(&result->seconds, "filter");
     const FilterParams params = MakeFilterParams(
-        options_.patch_match, static_cast<int>(views.srcs.size()));
-    consistent =
-        backend_->ConsistentViews(map, params, info.spec.geometric, control);
+        options_.patch_match,
+        static_cast<int>(problems_[problem].src_images.size()));
+    // A subset of images may have no maps of its sources at all.
+    const bool geometric =
+        info.spec.geometric &&
+        num_without_maps_ < static_cast<int>(views.srcs.size());
+    consistent = backend_->ConsistentViews(map, params, geometric, control);
     keep.resize(consistent.size());
     for (size_t i = 0; i < keep.size(); ++i) {
       keep[i] = __builtin_popcount(consistent[i]) >= params.min_num_consistent;
@@ -193,6 +206,11 @@ void StageRunner::Publish(int stage,
     log_(LogLevel::kInfo, "Writing " + info.name + " output for " + name);
   }
   const StageFiles files = plan_.Files(stage, image);
+  RemoveStamp(workspace_.StatePath(), name, info.name);
+  if (info.is_public) {
+    std::error_code ignored;
+    std::filesystem::remove(files.graph, ignored);
+  }
   WriteMap(files.normal, maps.normal);
   WriteMap(files.depth, maps.depth);
   if (plan_.WritesGraph(stage)) {
@@ -214,7 +232,8 @@ void StageRunner::Publish(int stage,
   WriteStamp(workspace_.StatePath(),
              name,
              info.name,
-             plan_.FingerprintOf(stage, problem),
+             misses_maps_ ? plan_.IncompleteFingerprintOf(stage, problem)
+                          : plan_.FingerprintOf(stage, problem),
              ToJson(*result));
 }
 

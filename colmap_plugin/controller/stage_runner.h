@@ -56,6 +56,10 @@ class StageRunner {
   Backend* backend_;
   const LogSink& log_;
   const MethodParams params_;
+  // Of the current problem: sources without depth maps, and whether one that is
+  // a reference itself lacks them, or has them from incomplete inputs.
+  int num_without_maps_ = 0;
+  bool misses_maps_ = false;
   std::vector<int>
       src_images_;  // image index of each source view of the current problem
 };

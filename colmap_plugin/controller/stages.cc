@@ -117,9 +117,9 @@ StagePlan::StagePlan(const Workspace& workspace,
       stages_(MakeStages(schedule)) {
   const int num_stages = static_cast<int>(stages_.size());
   const int num_problems = static_cast<int>(problems.size());
-  std::vector<int> problem_of_image(workspace.num_images(), -1);
+  problem_of_image_.assign(workspace.num_images(), -1);
   for (int p = 0; p < num_problems; ++p)
-    problem_of_image[problems[p].ref_image] = p;
+    problem_of_image_[problems[p].ref_image] = p;
 
   for (int s = 0; s < num_stages; ++s) {
     fingerprints_.emplace_back();
@@ -131,8 +131,9 @@ StagePlan::StagePlan(const Workspace& workspace,
         hash.AddString(fingerprints_[s - 1][p]);
         for (const int src : problems[p].src_images) {
           if (!stages_[s].spec.geometric) break;
-          const int q = problem_of_image[src];
-          hash.AddString(q < 0 ? "" : fingerprints_[s - 1][q]);
+          const int q = problem_of_image_[src];
+          hash.AddString(q < 0 ? StampOf(s - 1, src).value_or("")
+                               : fingerprints_[s - 1][q]);
         }
       }
       fingerprints_[s].push_back(hash.Hex());
@@ -150,7 +151,7 @@ StagePlan::StagePlan(const Workspace& workspace,
       wanted[q] = true;
       if (!stages_[s + 1].spec.geometric) continue;
       for (const int src : problems[q].src_images) {
-        if (problem_of_image[src] >= 0) wanted[problem_of_image[src]] = true;
+        if (problem_of_image_[src] >= 0) wanted[problem_of_image_[src]] = true;
       }
     }
     for (int p = 0; p < num_problems; ++p) {
@@ -176,6 +177,23 @@ StageFiles StagePlan::Files(int s, int image) const {
   return {folder / (name + ".depth.bin"), folder / (name + ".normal.bin"), {}};
 }
 
+std::optional<std::string> StagePlan::StampOf(int s, int image) const {
+  return ReadStampFingerprint(
+      workspace_.StatePath(), workspace_.ImageName(image), stages_[s].name);
+}
+
+bool StagePlan::HasCompleteMaps(int s, int image) const {
+  const std::optional<std::string> stamp = StampOf(s, image);
+  const int p = problem_of_image_[image];
+  return stamp && (p < 0 || *stamp == fingerprints_[s][p]);
+}
+
+bool StagePlan::HasCurrentMaps(int s, int image) const {
+  const int p = problem_of_image_[image];
+  return HasCompleteMaps(s, image) ||
+         (p >= 0 && StampOf(s, image) == IncompleteFingerprintOf(s, p));
+}
+
 bool StagePlan::WritesGraph(int s) const {
   return options_.patch_match.write_consistency_graph && stages_[s].is_public;
 }
@@ -188,9 +206,7 @@ bool StagePlan::IsFinished(int s, int p) {
       !std::filesystem::exists(files.normal, error)) {
     return false;
   }
-  const auto fingerprint = ReadStampFingerprint(
-      workspace_.StatePath(), workspace_.ImageName(image), stages_[s].name);
-  if (fingerprint != fingerprints_[s][p]) {
+  if (!HasCompleteMaps(s, image)) {
     replaces_foreign_maps_ = true;
     return false;
   }
@@ -200,7 +216,12 @@ bool StagePlan::IsFinished(int s, int p) {
            header.channels == channels;
   };
   try {
-    if (WritesGraph(s)) ReadConsistencyGraph(files.graph);
+    if (WritesGraph(s)) {
+      const ConsistencyGraph graph = ReadConsistencyGraph(files.graph);
+      if (graph.width != camera.width || graph.height != camera.height) {
+        return false;
+      }
+    }
     return fits(ReadMapHeader(files.depth), 1) &&
            fits(ReadMapHeader(files.normal), 3);
   } catch (const Error&) {

@@ -8,6 +8,7 @@
 #include "src/engine/schedule.h"
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,7 +45,18 @@ class StagePlan {
   const std::string& FingerprintOf(int s, int p) const {
     return fingerprints_[s][p];
   }
+  // What the stamp holds if maps of a source were missing: good enough to go on
+  // with, computed again by the next run.
+  std::string IncompleteFingerprintOf(int s, int p) const {
+    return fingerprints_[s][p] + "-incomplete";
+  }
   StageFiles Files(int s, int image) const;
+  // Whether the image's maps of stage s are those of this plan; for an image
+  // that is no reference here, whether another run of ours finished them.
+  bool HasCompleteMaps(int s, int image) const;
+  // The same, or made without the maps of some source that failed.
+  bool HasCurrentMaps(int s, int image) const;
+  bool IsReference(int image) const { return problem_of_image_[image] >= 0; }
   // The image's camera at the scale of the stage.
   Camera CameraOf(int s, int image) const {
     return LevelCamera(workspace_.camera(image), stages_[s].spec.level);
@@ -53,11 +65,13 @@ class StagePlan {
 
  private:
   bool IsFinished(int s, int p);
+  std::optional<std::string> StampOf(int s, int image) const;
 
   const Workspace& workspace_;
   const std::vector<StereoProblem>& problems_;
   const ControllerOptions& options_;
   std::vector<Stage> stages_;
+  std::vector<int> problem_of_image_;  // -1: the image is no reference
   std::vector<std::vector<std::string>> fingerprints_;  // [stage][problem]
   std::vector<std::vector<bool>> needed_;               // [stage][problem]
   bool replaces_foreign_maps_ = false;

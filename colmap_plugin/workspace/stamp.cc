@@ -36,6 +36,13 @@ void WriteStamp(const std::filesystem::path& state_path,
       stamp.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
+void RemoveStamp(const std::filesystem::path& state_path,
+                 const std::string& image_name,
+                 const std::string& stage) {
+  std::error_code ignored;  // absent is as good
+  std::filesystem::remove(StampPath(state_path, image_name, stage), ignored);
+}
+
 std::optional<std::string> ReadStampFingerprint(
     const std::filesystem::path& state_path,
     const std::string& image_name,

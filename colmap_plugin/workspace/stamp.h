@@ -26,6 +26,12 @@ void WriteStamp(const std::filesystem::path& state_path,
                 const std::string& fingerprint,
                 const nlohmann::json& statistics);
 
+// Before maps are replaced: from then on they are finished only with a new
+// stamp.
+void RemoveStamp(const std::filesystem::path& state_path,
+                 const std::string& image_name,
+                 const std::string& stage);
+
 // Nothing if the stamp is absent or damaged: the maps are then made anew.
 std::optional<std::string> ReadStampFingerprint(
     const std::filesystem::path& state_path,

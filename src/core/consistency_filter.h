@@ -36,6 +36,7 @@ HPM_HD uint32_t ConsistentViews(const VisitParams& params,
     const float distance = Norm(to_src);
     if (!(distance > 0) || Dot(to_src, plane.normal) <= 0) continue;
     if (Dot(to_src, to_ref) > max_cos * distance) continue;
+    if (params.geometric && !cost.HasDepth(j)) continue;
     if (params.geometric &&
         cost.GeometricError(plane, j) > filter.max_reprojection_error)
       continue;

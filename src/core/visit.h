@@ -5,6 +5,8 @@
 //                    const uint8_t* views, int num_views, float* costs) const;
 //     costs[i * num_views + k] = matching cost of planes[i] in view views[k];
 //     a batch, so that the backend can fill its lanes;
+//   bool HasDepth(int view) const;
+//     whether the view has a depth map (geometric passes only);
 //   float GeometricError(const Plane& plane, int view) const;
 //     reprojection error in pixels, capped (geometric passes only).
 #pragma once

@@ -25,6 +25,8 @@ class CpuViews {
   // the largest focal length times baseline.
   float parallax() const { return parallax_; }
 
+  bool HasDepth(int view) const { return inverse_depths_[view] != nullptr; }
+
   RefPatch PatchAt(int col, int row) const;
   float GeometricError(const PlaneSlope& slope,
                        int view,
@@ -78,6 +80,8 @@ class CpuPixelCost {
                 costs);
     num_evaluations_ += static_cast<uint64_t>(num_planes) * num_views;
   }
+
+  bool HasDepth(int view) const { return views_.HasDepth(view); }
 
   float GeometricError(const Plane& plane, int view) const {
     return views_.GeometricError(SlopeOf(views_.match().ref, plane),

@@ -36,7 +36,8 @@ class ConsistencyFilter : public testing::Test {
   uint32_t Mask() const {
     const FakeCost cost = {
         [this](const Plane&, int view) { return costs_[view]; },
-        [this](const Plane&, int view) { return errors_[view]; }};
+        [this](const Plane&, int view) { return errors_[view]; },
+        without_depth_};
     return ConsistentViews(params_, filter_, centers_, cost, plane_, 50, 40);
   }
 
@@ -46,6 +47,7 @@ class ConsistencyFilter : public testing::Test {
   Vec3f centers_[3];
   float costs_[3];
   float errors_[3];
+  uint32_t without_depth_ = 0;
 };
 
 TEST_F(ConsistencyFilter, KeepsGoodViews) { EXPECT_EQ(Mask(), 7u); }
@@ -69,6 +71,13 @@ TEST_F(ConsistencyFilter, DropsSmallTriangulationAngles) {
   filter_.min_triangulation_angle = 0;
   centers_[1] = AtAngle(0.5f);
   EXPECT_EQ(Mask(), 7u);
+}
+
+TEST_F(ConsistencyFilter, DropsViewsWithoutDepthInGeometricPasses) {
+  without_depth_ = 1u << 1;
+  EXPECT_EQ(Mask(), 7u);
+  params_.geometric = true;
+  EXPECT_EQ(Mask(), 5u);
 }
 
 TEST_F(ConsistencyFilter, DropsViewsThatSeeTheBack) {

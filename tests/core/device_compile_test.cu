@@ -61,6 +61,10 @@ struct DeviceCost {
     }
   }
 
+  __device__ bool HasDepth(int view) const {
+    return views.inverse_depths[view] != nullptr;
+  }
+
   __device__ float GeometricError(const Plane& plane, int view) const {
     const float* inverse_depth = views.inverse_depths[view];
     const int width = views.to_src[view].width;

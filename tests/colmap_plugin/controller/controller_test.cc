@@ -2,6 +2,7 @@
 #include "colmap_plugin/controller/controller.h"
 
 #include "colmap_plugin/formats/map_file.h"
+#include "colmap_plugin/workspace/stamp.h"
 #include "src/base/error.h"
 #include "src/engine/schedule.h"
 #include "tests/colmap_plugin/controller/scene_workspace.h"
@@ -187,6 +188,40 @@ TEST_F(ControllerTest, UnreadableImageFailsAloneAndIsNamed) {
   EXPECT_EQ(summary.num_computed, kNumImages - 1);
   EXPECT_TRUE(std::filesystem::exists(MapPath("depth_maps", 0, "geometric")));
   EXPECT_FALSE(std::filesystem::exists(MapPath("depth_maps", 1, "geometric")));
+}
+
+// Half replaced maps must not pass for those of the run before.
+TEST_F(ControllerTest, StampsGoBeforeTheirMapsAreReplaced) {
+  Run();
+  const std::filesystem::path state = scene_.path() / "stereo/hpm_mvs";
+  ASSERT_TRUE(ReadStampFingerprint(state, ViewName(0), "photometric"));
+  // A folder in its place: the depth map cannot be published.
+  const std::filesystem::path depth = MapPath("depth_maps", 0, "photometric");
+  std::filesystem::remove(depth);
+  std::filesystem::create_directories(depth / "in_the_way");
+  options_.random_seed = 7;
+  try {
+    Run();
+  } catch (const Error&) {
+  }
+  EXPECT_FALSE(ReadStampFingerprint(state, ViewName(0), "photometric"));
+}
+
+TEST_F(ControllerTest, ResultsWithoutAFailedSourceAreMadeAgain) {
+  Run();
+  const std::vector<float> expected = Depth(0, "geometric");
+  options_.hpm.overwrite = true;
+  on_progress_ = [&](const ProgressEvent& event) {
+    // After its own photometric stage, the maps of image 1 vanish.
+    if (event.stage != "photometric" && !event.image.empty()) {
+      std::filesystem::remove(MapPath("depth_maps", 1, "photometric"));
+    }
+  };
+  Run();
+  on_progress_ = nullptr;
+  options_.hpm.overwrite = false;
+  Run();
+  EXPECT_EQ(Depth(0, "geometric"), expected);
 }
 
 TEST_F(ControllerTest, EveryMethodRuns) {
