@@ -33,12 +33,13 @@ ProblemOptions MakeProblemOptions(const ControllerOptions& options) {
   return result;
 }
 
-// The largest image decides for all, so that all have the same stages.
-int LevelsOf(const Workspace& workspace,
-             const std::vector<StereoProblem>& problems) {
+// The largest image of the workspace decides for all, so that all have the same
+// stages, whichever of them this run computes.
+int LevelsOf(const Workspace& workspace) {
   int side = 1;
-  for (const StereoProblem& problem : problems) {
-    const Camera& camera = workspace.camera(problem.ref_image);
+  for (int image = 0; image < workspace.num_images(); ++image) {
+    if (!workspace.usable(image)) continue;
+    const Camera& camera = workspace.camera(image);
     side = std::max({side, camera.width, camera.height});
   }
   return AutomaticLevels(side);
@@ -99,7 +100,7 @@ RunSummary PatchMatchController::Run() {
        fmt::format("Configuration has {} problems...", problems.size()));
 
   if (options_.hpm.num_levels <= 0) {
-    options_.hpm.num_levels = LevelsOf(workspace, problems);
+    options_.hpm.num_levels = LevelsOf(workspace);
   }
   const Schedule schedule = MakeSchedule(MakeScheduleOptions(options_));
   const StagePlan plan(workspace, problems, schedule, options_);
