@@ -60,8 +60,8 @@ class StageRunner {
   // a reference itself lacks them, or has them from incomplete inputs.
   int num_without_maps_ = 0;
   bool misses_maps_ = false;
-  std::vector<int>
-      src_images_;  // image index of each source view of the current problem
+  // Image index of each source view of the current problem.
+  std::vector<int> src_images_;
 };
 
 }  // namespace hpm
