@@ -14,6 +14,12 @@ MethodParams MakeMethodParams(const ControllerOptions& options) {
   params.num_view_draws = colmap.num_samples;
   params.geom_weight = static_cast<float>(options.hpm.geom_weight);
   params.geom_max_error = static_cast<float>(options.hpm.geom_max_error);
+  params.max_drawn_views = options.hpm.max_views;
+  params.region_max_gradient = static_cast<float>(options.hpm.weak_gradient);
+  params.smoothness_weight = static_cast<float>(options.hpm.smoothness);
+  if (const char* t = getenv("RG"))
+    params.region_gamma = static_cast<float>(atof(t));
+  if (const char* t = getenv("GP")) params.region_min_consistent = atoi(t);
   return params;
 }
 

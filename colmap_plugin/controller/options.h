@@ -41,13 +41,17 @@ struct PatchMatchStereoOptions {
 
 // "--Hpm.*": what COLMAP does not have.
 struct HpmOptions {
-  std::string method = "hpm";  // see src/engine/schedule.h
+  std::string method = "hpm";    // see src/engine/schedule.h
+  std::string quality = "high";  // see colmap_plugin/tool/quality.h
   std::string cpu_target =
       "auto";  // auto, scalar, or a SIMD target of this machine
   int num_iterations =
       3;  // red/black iterations of a photometric or prior pass
-  int num_geom_iterations = 3;  // of a geometric pass
+  int num_geom_iterations = 2;  // of a geometric pass
   int num_geom_passes = 2;
+  int max_views = 4;          // source views that judge a pixel in a visit
+  double weak_gradient = 2;   // grey levels per pixel; 0: no region priors
+  double smoothness = 0.4;    // weight in geometric passes; 0: off
   double geom_weight = 0.1;   // lambda of the geometric term
   double geom_max_error = 5;  // pixels, cap of the geometric term
   int num_levels = -1;     // levels of the prior hierarchy; -1: by image size

@@ -14,7 +14,7 @@ namespace hpm {
 namespace {
 
 // Raise when the same options give other maps.
-constexpr int kAlgorithmVersion = 1;
+constexpr int kAlgorithmVersion = 2;
 
 std::vector<Stage> MakeStages(const Schedule& schedule) {
   std::vector<Stage> stages;
@@ -56,7 +56,9 @@ void AddImage(const Workspace& workspace, int image, Fingerprint* hash) {
 }
 
 void AddMethod(const MethodParams& params, Fingerprint* hash) {
-  hash->AddInt(params.patch_radius).AddInt(params.num_view_draws);
+  hash->AddInt(params.patch_radius)
+      .AddInt(params.num_view_draws)
+      .AddInt(params.max_drawn_views);
   for (const float v : {params.sigma_spatial,
                         params.sigma_color,
                         params.depth_perturbation,
@@ -100,6 +102,8 @@ std::string OwnFingerprint(const Workspace& workspace,
   }
   if (stage.spec.geometric) {
     hash.AddDouble(params.geom_weight).AddDouble(params.geom_max_error);
+    hash.AddDouble(params.smoothness_weight);
+    hash.AddDouble(params.region_max_gradient);
   }
   if (stage.is_final) AddFilter(options.patch_match, &hash);
   return hash.Hex();

@@ -1,5 +1,7 @@
 #include "colmap_plugin/tool/option_table.h"
 
+#include "colmap_plugin/tool/quality.h"
+#include "src/core/limits.h"
 #include "src/engine/schedule.h"
 
 #include <utility>
@@ -103,8 +105,11 @@ std::vector<OptionSpec> MakeTable() {
       Stereo(kCommon, "geom_consistency", &P::geom_consistency, Anything(),
              "Add the geometric passes and write *.geometric.bin; 0: only *.photometric.bin"),
       Hpm(kCommon, "method", &H::method, OneOf(MethodNames()),
-          "hpm: planar priors at all scales; hpm_fast: at the coarsest only; nesp: without priors; "
+          "hpm: planar priors; hpm_fast: with fewer passes; nesp: without priors; "
           "the others are rows of the paper's ablation (docs/ablation.md)"),
+      Hpm(kCommon, "quality", &H::quality, OneOf(QualityNames()),
+          "Effort: sets Hpm.num_iterations, num_geom_passes, num_geom_iterations and max_views "
+          "where they are not given (docs/benchmarks.md)"),
       Hpm(kCommon, "overwrite", &H::overwrite, Anything(),
           "Compute maps again that are complete and made with the same options"),
       Hpm(kCommon, "previews", &H::previews, Anything(),
@@ -167,6 +172,13 @@ std::vector<OptionSpec> MakeTable() {
       Hpm(kExpert, "num_geom_iterations", &H::num_geom_iterations, AtLeast(1),
           "Red/black iterations of a geometric pass"),
       Hpm(kExpert, "num_geom_passes", &H::num_geom_passes, AtLeast(1), "Geometric passes"),
+      Hpm(kExpert, "max_views", &H::max_views, Between(1, kMaxViews),
+          "Source images that judge a pixel at a time, chosen anew in every iteration"),
+      Hpm(kExpert, "weak_gradient", &H::weak_gradient, AtLeast(0),
+          "Grey levels per pixel under which a region counts as untextured and hpm fits planes to "
+          "it; 0: never"),
+      Hpm(kExpert, "smoothness", &H::smoothness, AtLeast(0),
+          "Cost in geometric passes of a plane that its neighbourhood does not continue; 0: off"),
       Hpm(kExpert, "geom_weight", &H::geom_weight, AtLeast(0),
           "Weight of the geometric term per pixel of reprojection error"),
       Hpm(kExpert, "geom_max_error", &H::geom_max_error, AtLeast(0),

@@ -1,5 +1,7 @@
 #include "colmap_plugin/tool/parse_options.h"
 
+#include "colmap_plugin/tool/quality.h"
+
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -93,6 +95,13 @@ class Interpreter {
               "Hpm.geom_weight");
     CarryOver("PatchMatchStereo.geom_consistency_max_cost",
               "Hpm.geom_max_error");
+    for (const Quality& quality : Qualities()) {
+      if (quality.name != options.hpm.quality) continue;
+      for (const auto& [name, value] : quality.settings) {
+        if (given_.count(name)) continue;
+        ParseValue(value, FindOption(name)->member(&result_->options));
+      }
+    }
     NoteWhatHasNoEffect();
   }
 

@@ -14,8 +14,39 @@ struct Candidates {
   Plane plane[kNumRegions];
   uint32_t exists;   // bit i: region i has a sample inside the image
   uint32_t current;  // bit i: candidate i is nearly the current hypothesis
-  float matrix[kNumRegions * kMaxViews];  // [region * num_views + view]
+  int num_views;     // that were asked
+  uint8_t view[kMaxViews];
+  float matrix[kNumRegions * kMaxViews];  // [region * num_views + k]: view[k]
 };
+
+// Views worth asking: those that the pixel itself or its neighbours trusted,
+// and one more in turn, so that a view can come back.
+HPM_HD void ChooseViews(const VisitParams& params,
+                        const SamplingPattern& pattern,
+                        const PixelState& state,
+                        float draw,
+                        int col,
+                        int row,
+                        Candidates* candidates) {
+  uint32_t trusted = state.masks[row * state.width + col];
+  const int d = pattern.mask_distance;
+  const int dcol[4] = {0, 0, -d, d};
+  const int drow[4] = {-d, d, 0, 0};
+  for (int b = 0; b < 4; ++b) {
+    const int c = col + dcol[b];
+    const int r = row + drow[b];
+    if (c < 0 || r < 0 || c >= state.width || r >= state.height) continue;
+    trusted |= state.masks[r * state.width + c];
+  }
+  const int turn =
+      static_cast<int>(draw * static_cast<float>(params.num_views));
+  if (turn < params.num_views) trusted |= 1u << turn;
+  candidates->num_views = 0;
+  for (int j = 0; j < params.num_views; ++j) {
+    if (trusted >> j & 1)
+      candidates->view[candidates->num_views++] = static_cast<uint8_t>(j);
+  }
+}
 
 // Whether two planes put the samples of the patch less than the bound apart, to
 // first order and for a source camera at the distance of the reference: then
@@ -78,15 +109,18 @@ HPM_HD bool MustExtend(const float* costs,
   return num_good < kNumGood || num_bad > kNumBad;
 }
 
+// `draw`: random, in [0, 1).
 template <class Cost>
 HPM_HD void CollectCandidates(const VisitParams& params,
                               const SamplingPattern& pattern,
                               const PixelState& state,
                               const Cost& cost,
                               int iteration,
+                              float draw,
                               int col,
                               int row,
                               Candidates* candidates) {
+  ChooseViews(params, pattern, state, draw, col, row, candidates);
   const float x = static_cast<float>(col);
   const float y = static_cast<float>(row);
   const PlaneSlope current =
@@ -122,26 +156,25 @@ HPM_HD void CollectCandidates(const VisitParams& params,
     batch_region[batch_size] = static_cast<uint8_t>(i);
     batch[batch_size++] = state.planes[best];
   }
-  uint8_t views[kMaxViews];
-  for (int j = 0; j < params.num_views; ++j) views[j] = static_cast<uint8_t>(j);
+  const int num_views = candidates->num_views;
 
   float costs[kNumRegions * kMaxViews];
   uint32_t growing = candidates->exists;
   for (int extension = 0;; ++extension) {
     if (batch_size > 0)
-      cost.Photometric(batch, batch_size, views, params.num_views, costs);
+      cost.Photometric(batch, batch_size, candidates->view, num_views, costs);
     for (int b = 0; b < batch_size; ++b) {
-      for (int j = 0; j < params.num_views; ++j) {
-        candidates->matrix[batch_region[b] * params.num_views + j] =
-            costs[b * params.num_views + j];
+      for (int j = 0; j < num_views; ++j) {
+        candidates->matrix[batch_region[b] * num_views + j] =
+            costs[b * num_views + j];
       }
     }
     if (extension == 0) {
       for (int i = 0; i < kNumRegions; ++i) {
         if (!(candidates->exists >> i & 1) || same_as[i] == i) continue;
-        for (int j = 0; j < params.num_views; ++j) {
-          candidates->matrix[i * params.num_views + j] =
-              candidates->matrix[same_as[i] * params.num_views + j];
+        for (int j = 0; j < num_views; ++j) {
+          candidates->matrix[i * num_views + j] =
+              candidates->matrix[same_as[i] * num_views + j];
         }
       }
     }
@@ -149,8 +182,8 @@ HPM_HD void CollectCandidates(const VisitParams& params,
     batch_size = 0;
     for (int i = 0; i < kNumRegions; ++i) {
       if (!(growing >> i & 1)) continue;
-      if (!MustExtend(&candidates->matrix[i * params.num_views],
-                      params.num_views,
+      if (!MustExtend(&candidates->matrix[i * num_views],
+                      num_views,
                       iteration,
                       extension)) {
         growing &= ~(1u << i);

@@ -8,7 +8,7 @@
 namespace hpm {
 
 struct FilterParams {
-  float min_ncc;
+  float min_ncc;                  // -1: not looked at
   float min_triangulation_angle;  // radians
   float max_reprojection_error;   // pixels
   int min_num_consistent;
@@ -43,6 +43,10 @@ HPM_HD uint32_t ConsistentViews(const VisitParams& params,
     views[num_views++] = static_cast<uint8_t>(j);
   }
   uint32_t mask = 0;
+  if (filter.min_ncc <= -1) {  // every correlation will do
+    for (int k = 0; k < num_views; ++k) mask |= 1u << views[k];
+    return mask;
+  }
   if (num_views == 0) return mask;
   float costs[kMaxViews];
   cost.Photometric(&plane, 1, views, num_views, costs);

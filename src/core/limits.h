@@ -14,6 +14,8 @@ constexpr int kPatchSize = kPatchAxis * kPatchAxis;
 constexpr float kMaxCost =
     2.0f;  // 1 - NCC lies in [0, 2]; also the cost of "cannot be seen"
 constexpr float kMinVariance =
-    1e-5f;  // grey levels squared; below it a window counts as constant
+    1e-2f;  // grey levels squared; below it a window counts as constant:
+            // quantisation alone makes more, and float32 sums are not exact
+            // enough for less
 
 }  // namespace hpm

@@ -16,11 +16,22 @@ struct PatchShape {
   int offset[kPatchAxis];     // pixels, per axis
   float spatial[kPatchSize];  // exp(-|q - p| / (2 sigma_spatial^2)), row-major
   float color_falloff;        // 1 / (2 sigma_color^2), per grey level
+  float color_cut;            // 1 / (2 cut_color^2), per grey level squared
 };
+
+// Weight of a sample whose grey value differs by `difference` >= 0 from the
+// centre's. ACMH's exponential has a long tail: one edge in the window
+// outweighs the faint shading of a plain wall and pulls the wall to the edge's
+// depth. The Gaussian cuts the tail.
+HPM_HD float ColorWeight(const PatchShape& shape, float difference) {
+  return expf(-difference * shape.color_falloff -
+              difference * difference * shape.color_cut);
+}
 
 HPM_HD PatchShape MakePatchShape(int radius,
                                  float sigma_spatial,
-                                 float sigma_color) {
+                                 float sigma_color,
+                                 float cut_color) {
   PatchShape shape;
   for (int i = 0; i < kPatchAxis; ++i) {
     shape.offset[i] = static_cast<int>(
@@ -37,6 +48,7 @@ HPM_HD PatchShape MakePatchShape(int radius,
     }
   }
   shape.color_falloff = 1 / (2 * sigma_color * sigma_color);
+  shape.color_cut = 1 / (2 * cut_color * cut_color);
   return shape;
 }
 
@@ -52,7 +64,7 @@ struct RefPatch {
 };
 
 // `grey(col, row)` returns 0..255 and clamps at the border.
-// `color_weight(d)` returns exp(-d * shape.color_falloff) for d >= 0.
+// `color_weight(d)` returns ColorWeight(shape, d).
 template <class Grey, class ColorWeight>
 HPM_HD RefPatch MakeRefPatch(const PatchShape& shape,
                              const Grey& grey,

@@ -10,6 +10,7 @@
 namespace hpm {
 
 constexpr int kNumRefined = 6;
+constexpr int kFirstNear = 3;  // from here on they lie near the current one
 
 // Uniform on the hemisphere that faces the camera along `ray`.
 HPM_HD Vec3f RandomNormal(const Vec3f& ray, Rng* rng) {

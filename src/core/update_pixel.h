@@ -4,6 +4,7 @@
 
 #include "src/core/candidates.h"
 #include "src/core/refinement.h"
+#include "src/core/smoothness.h"
 
 namespace hpm {
 
@@ -19,7 +20,7 @@ HPM_HD void ViewProbabilities(const VisitParams& params,
                               float probability[kMaxViews]) {
   const float good_cost = GoodCost(iteration);
   float neighbour_votes[kMaxViews];
-  for (int j = 0; j < params.num_views; ++j) neighbour_votes[j] = 0;
+  for (int j = 0; j < candidates.num_views; ++j) neighbour_votes[j] = 0;
   const int d = pattern.mask_distance;
   const int dcol[4] = {0, 0, -d, d};
   const int drow[4] = {-d, d, 0, 0};
@@ -28,17 +29,18 @@ HPM_HD void ViewProbabilities(const VisitParams& params,
     const int r = row + drow[b];
     if (c < 0 || r < 0 || c >= state.width || r >= state.height) continue;
     const uint32_t mask = state.masks[r * state.width + c];
-    for (int j = 0; j < params.num_views; ++j) {
-      neighbour_votes[j] += (mask >> j & 1) ? 0.9f : 0.1f;
+    for (int j = 0; j < candidates.num_views; ++j) {
+      neighbour_votes[j] += (mask >> candidates.view[j] & 1) ? 0.9f : 0.1f;
     }
   }
-  for (int j = 0; j < params.num_views; ++j) {
+  for (int j = 0; j < candidates.num_views; ++j) {
     probability[j] = neighbour_votes[j] * ViewLikelihood(candidates.matrix,
-                                                         params.num_views,
+                                                         candidates.num_views,
                                                          j,
                                                          candidates.exists,
                                                          good_cost);
   }
+  KeepLargest(params.max_drawn_views, candidates.num_views, probability);
 }
 
 // Higher is better; without a prior the order of the costs decides.
@@ -57,6 +59,65 @@ struct Ranking {
   }
 };
 
+// What a plane costs beside matching, never negative.
+template <class Cost>
+HPM_HD float AddedCost(const VisitParams& params,
+                       const Cost& cost,
+                       const ViewWeights& weights,
+                       const Surroundings& around,
+                       const Plane& plane) {
+  return GeometricCost(params, cost, weights, plane) +
+         SmoothnessCost(params, around, plane);
+}
+
+// New hypotheses for the pixel at (x, y) whose plane is `best`; returns their
+// number. `prior` may be null.
+HPM_HD int RefinedPlanes(const VisitParams& params,
+                         const Plane& best,
+                         const Plane* prior,
+                         float x,
+                         float y,
+                         Rng* rng,
+                         Plane planes[kNumRefined]) {
+  const Vec3f ray = RayAt(params.ref, x, y);
+  const float depth = -best.distance / Dot(best.normal, ray);
+  float z_random;
+  Vec3f n_random;
+  if (prior != nullptr) {
+    const float prior_depth = -prior->distance / Dot(prior->normal, ray);
+    z_random =
+        prior_depth + rng->Uniform(-3.0f, 3.0f) * params.prior_term.sigma_depth;
+    n_random = PerturbNormal(
+        prior->normal, ray, 0.5f * params.prior_term.sigma_angle, rng);
+  } else {
+    z_random = rng->Uniform(params.depth_min, params.depth_max);
+    n_random = RandomNormal(ray, rng);
+  }
+  const float z_perturbed = depth * rng->Uniform(1 - params.depth_perturbation,
+                                                 1 + params.depth_perturbation);
+  const Vec3f n_perturbed =
+      PerturbNormal(best.normal, ray, params.normal_perturbation, rng);
+  CombineHypotheses(params.ref,
+                    x,
+                    y,
+                    depth,
+                    best.normal,
+                    z_random,
+                    n_random,
+                    z_perturbed,
+                    n_perturbed,
+                    planes);
+  if (!params.search_near) {
+    if (prior != nullptr) planes[0] = *prior;
+    return kNumRefined;
+  }
+  int num_planes = 0;
+  if (prior != nullptr) planes[num_planes++] = *prior;
+  for (int i = kFirstNear; i < kNumRefined; ++i)
+    planes[num_planes++] = planes[i];
+  return num_planes;
+}
+
 template <class Cost>
 HPM_HD void UpdatePixel(const VisitParams& params,
                         const SamplingPattern& pattern,
@@ -71,15 +132,27 @@ HPM_HD void UpdatePixel(const VisitParams& params,
   const float y = static_cast<float>(row);
   const Vec3f ray = RayAt(params.ref, x, y);
 
+  Surroundings around;
+  CollectSurroundings(params, state, cost, col, row, &around);
   Candidates candidates;
-  CollectCandidates(
-      params, pattern, state, cost, iteration, col, row, &candidates);
+  CollectCandidates(params,
+                    pattern,
+                    state,
+                    cost,
+                    iteration,
+                    rng->Uniform(),
+                    col,
+                    row,
+                    &candidates);
 
   float probability[kMaxViews];
   ViewProbabilities(
       params, pattern, state, candidates, iteration, col, row, probability);
-  const ViewWeights weights = DrawViews(
-      probability, params.num_views, params.num_view_draws, rng->Uniform());
+  const ViewWeights weights = DrawViews(probability,
+                                        candidates.view,
+                                        candidates.num_views,
+                                        params.num_view_draws,
+                                        rng->Uniform());
 
   Ranking rank = {&params, false, 0, {0, 0, 0}};
   if (state.priors != nullptr && state.priors[at].distance > 0) {
@@ -94,13 +167,13 @@ HPM_HD void UpdatePixel(const VisitParams& params,
     int same = 0;
     while (!(candidates.current >> same & 1)) ++same;
     best_cost = WeightedMean(
-        weights, &candidates.matrix[same * params.num_views], true);
+        weights, &candidates.matrix[same * candidates.num_views], true);
   } else {
     PhotometricCosts(cost, weights, &best, 1, &best_cost);
   }
-  best_cost += GeometricCost(params, cost, weights, best);
-  float depth = -best.distance / Dot(best.normal, ray);
-  float best_rank = rank(best_cost, depth, best.normal);
+  best_cost += AddedCost(params, cost, weights, around, best);
+  float best_rank =
+      rank(best_cost, -best.distance / Dot(best.normal, ray), best.normal);
   bool propagated = false;
 
   // Candidates: their photometric costs are known already.
@@ -109,55 +182,36 @@ HPM_HD void UpdatePixel(const VisitParams& params,
     const Plane& plane = candidates.plane[i];
     const float z = -plane.distance / Dot(plane.normal, ray);
     if (!(z >= params.depth_min && z <= params.depth_max)) continue;
-    float candidate_cost =
-        WeightedMean(weights, &candidates.matrix[i * params.num_views], true);
-    // The geometric term can only add to the cost.
+    float candidate_cost = WeightedMean(
+        weights, &candidates.matrix[i * candidates.num_views], true);
+    // What is added is never negative.
     if (!(rank(candidate_cost, z, plane.normal) > best_rank)) continue;
-    candidate_cost += GeometricCost(params, cost, weights, plane);
+    candidate_cost += AddedCost(params, cost, weights, around, plane);
     const float candidate_rank = rank(candidate_cost, z, plane.normal);
     if (candidate_rank > best_rank) {
       best = plane;
       best_cost = candidate_cost;
       best_rank = candidate_rank;
-      depth = z;
       propagated = true;
     }
   }
 
-  // Refinement: all combinations start from the plane accepted so far.
-  float z_random;
-  Vec3f n_random;
-  if (rank.has_prior) {
-    z_random = rank.prior_depth +
-               rng->Uniform(-3.0f, 3.0f) * params.prior_term.sigma_depth;
-    n_random = PerturbNormal(
-        rank.prior_normal, ray, 0.5f * params.prior_term.sigma_angle, rng);
-  } else {
-    z_random = rng->Uniform(params.depth_min, params.depth_max);
-    n_random = RandomNormal(ray, rng);
-  }
-  const float z_perturbed = depth * rng->Uniform(1 - params.depth_perturbation,
-                                                 1 + params.depth_perturbation);
-  const Vec3f n_perturbed =
-      PerturbNormal(best.normal, ray, params.normal_perturbation, rng);
   Plane refined[kNumRefined];
   float refined_cost[kNumRefined];
-  CombineHypotheses(params.ref,
+  const int num_refined =
+      RefinedPlanes(params,
+                    best,
+                    rank.has_prior ? &state.priors[at] : nullptr,
                     x,
                     y,
-                    depth,
-                    best.normal,
-                    z_random,
-                    n_random,
-                    z_perturbed,
-                    n_perturbed,
+                    rng,
                     refined);
-  PhotometricCosts(cost, weights, refined, kNumRefined, refined_cost);
-  for (int i = 0; i < kNumRefined; ++i) {
+  PhotometricCosts(cost, weights, refined, num_refined, refined_cost);
+  for (int i = 0; i < num_refined; ++i) {
     const float z = -refined[i].distance / Dot(refined[i].normal, ray);
     if (!(z >= params.depth_min && z <= params.depth_max)) continue;
     if (!(rank(refined_cost[i], z, refined[i].normal) > best_rank)) continue;
-    refined_cost[i] += GeometricCost(params, cost, weights, refined[i]);
+    refined_cost[i] += AddedCost(params, cost, weights, around, refined[i]);
     const float refined_rank = rank(refined_cost[i], z, refined[i].normal);
     if (refined_rank > best_rank) {
       best = refined[i];

@@ -14,6 +14,7 @@ namespace hpm {
 struct ViewWeights {
   int num_views;
   uint8_t view[kMaxViews];
+  uint8_t slot[kMaxViews];  // where DrawViews() found the view
   float weight[kMaxViews];
   float weight_sum;
   uint32_t mask;
@@ -50,11 +51,29 @@ HPM_HD float ViewLikelihood(const float* costs,
   return expf(-good_cost * good_cost / 0.32f);
 }
 
+// Sets all but the `count` largest probabilities to zero.
+HPM_HD void KeepLargest(int count, int num_views, float* probability) {
+  for (int drop = num_views - count; drop > 0; --drop) {
+    int least = -1;
+    for (int j = 0; j < num_views; ++j) {
+      if (probability[j] > 0 &&
+          (least < 0 || probability[j] < probability[least]))
+        least = j;
+    }
+    if (least < 0) return;
+    int num_positive = 0;
+    for (int j = 0; j < num_views; ++j) num_positive += probability[j] > 0;
+    if (num_positive <= count) return;
+    probability[least] = 0;
+  }
+}
+
 // Draws `num_draws` views in proportion to `probability` (not normalised) by
 // systematic sampling: one random offset in [0, 1) for all draws, which has the
 // expectation of independent draws and less noise. If no view has a
 // probability, all views count alike.
 HPM_HD ViewWeights DrawViews(const float* probability,
+                             const uint8_t* views,
                              int num_views,
                              int num_draws,
                              float offset) {
@@ -77,10 +96,11 @@ HPM_HD ViewWeights DrawViews(const float* probability,
       if (until > drawn) drawn = until;
     }
     if (count > 0) {
-      weights.view[weights.num_views] = static_cast<uint8_t>(j);
+      weights.view[weights.num_views] = views[j];
+      weights.slot[weights.num_views] = static_cast<uint8_t>(j);
       weights.weight[weights.num_views++] = count;
       weights.weight_sum += count;
-      weights.mask |= 1u << j;
+      weights.mask |= 1u << views[j];
     }
   }
   return weights;

@@ -21,12 +21,12 @@ class CpuViews {
   // Camera centre of a source view in the reference camera frame.
   const std::vector<Vec3f>& src_centers() const { return src_centers_; }
 
-  // Pixels that a source position moves per unit of -1/z of the plane, about:
-  // the largest focal length times baseline.
-  float parallax() const { return parallax_; }
-
   bool HasDepth(int view) const { return inverse_depths_[view] != nullptr; }
 
+  float Grey(int col, int row) const {
+    return padded_ref_[static_cast<size_t>(row + padding_) * padded_width_ +
+                       col + padding_];
+  }
   RefPatch PatchAt(int col, int row) const;
   float GeometricError(const PlaneSlope& slope,
                        int view,
@@ -47,7 +47,6 @@ class CpuViews {
   std::vector<ViewWarp> to_src_, to_ref_;
   std::vector<std::shared_ptr<const std::vector<float>>> inverse_depths_;
   std::vector<Vec3f> src_centers_;
-  float parallax_ = 0;
 };
 
 class CpuPixelCost {
@@ -82,6 +81,7 @@ class CpuPixelCost {
   }
 
   bool HasDepth(int view) const { return views_.HasDepth(view); }
+  float Grey(int col, int row) const { return views_.Grey(col, row); }
 
   float GeometricError(const Plane& plane, int view) const {
     return views_.GeometricError(SlopeOf(views_.match().ref, plane),

@@ -1,5 +1,6 @@
 #include "src/engine/estimator.h"
 
+#include "src/engine/mine_regions.h"
 #include "src/engine/phase_timer.h"
 #include "src/prior/build_prior.h"
 
@@ -72,6 +73,11 @@ void RunStage(Backend* backend,
                                *views.ref.image,
                                pass.level,
                                {views.depth_min, views.depth_max});
+    }
+    if (pass.regions != RegionPriors::kNone) {
+      PhaseTimer timer(times, "build prior");
+      map->priors = MineRegions(
+          backend, views, params, *map, pass.id, {control.cancel, nullptr});
     }
     {
       PhaseTimer timer(times, PhaseName(pass.kind));

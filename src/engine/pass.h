@@ -12,11 +12,13 @@ struct MethodParams {
   int patch_radius = 5;     // pixels
   float sigma_spatial = 5;  // pixels
   float sigma_color = 3;    // grey levels
+  float cut_color = 15;     // grey levels; see PatchShape
   int num_view_draws = 15;
+  int max_drawn_views = 4;
   float depth_perturbation = 0.02f;        // relative
   float normal_perturbation = 0.0314159f;  // radians per axis
   float same_plane_bound =
-      0.05f;  // pixels; planes closer than this share their costs
+      0.2f;  // pixels; planes closer than this share their costs
   float geom_weight = 0.1f;  // cost per pixel of reprojection error
   float geom_max_error = 5;  // pixels
   float prior_gamma = 0.5f;
@@ -24,9 +26,26 @@ struct MethodParams {
   float prior_depth_share =
       1.0f / 64;                   // sigma of the prior's depth / depth range
   float prior_angle = 0.0872665f;  // radians
+  // Smoothness in geometric passes (src/core/smoothness.h).
+  float smoothness_weight = 0.4f;
+  float smoothness_max_error = 1;     // pixels
+  float smoothness_sigma_color = 10;  // grey levels
+  // Planes of regions without texture (src/prior/region_planes.h).
+  float region_max_gradient = 2;     // grey levels per pixel
+  float region_min_share = 0.005f;   // of the image
+  float region_max_error = 1;        // pixels; between views
+  float region_max_residual = 0.5f;  // pixels; of a point to its plane
+  int region_min_consistent = 3;     // views
+  // In place of prior_gamma: matching says little in these regions.
+  float region_gamma = 0.05f;
 };
 
 enum class PassKind { kBasic, kPrior, kGeometric };
+
+// Priors for regions without texture: kWeak as any prior, kStrong where
+// nothing but the prior is left to decide. A strong prior makes all views
+// agree on it, right or wrong, so it comes last.
+enum class RegionPriors { kNone, kWeak, kStrong };
 
 struct Pass {
   PassKind kind;
@@ -34,7 +53,8 @@ struct Pass {
   int num_iterations;
   int id;  // position in the method: part of the key of the random numbers
   int level = 0;  // kPrior: the prior is built on maps halved this many times
-  bool median = true;  // clean up at the end
+  bool median = true;                          // clean up at the end
+  RegionPriors regions = RegionPriors::kNone;  // kGeometric only
 };
 
 }  // namespace hpm

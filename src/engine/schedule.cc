@@ -14,41 +14,35 @@ struct Method {
   bool non_local;   // N of the paper's ablation
   bool extensible;  // E
   Priors priors;
+  bool regions;  // priors for weak regions in geometric passes
   bool pyramid;  // runs on images of all levels, coarse to fine (ACMM)
 };
 
 constexpr Method kMethods[] = {
-    {"acmh", false, false, Priors::kNone, false},
-    {"nsp", true, false, Priors::kNone, false},
-    {"esp", false, true, Priors::kNone, false},
-    {"nesp", true, true, Priors::kNone, false},
-    {"nesp_pa", true, true, Priors::kFull, false},
-    {"hpm_fast_no_nesp", false, false, Priors::kCoarsest, false},
-    {"hpm_no_nesp", false, false, Priors::kAll, false},
-    {"hpm_fast", true, true, Priors::kCoarsest, false},
-    {"hpm", true, true, Priors::kAll, false},
-    {"acmm", false, false, Priors::kNone, true},
-    {"acmp", false, false, Priors::kFull, false},
-    {"acmmp", false, false, Priors::kFull, true},
-    {"acmm_nesp", true, true, Priors::kNone, true},
-    {"acmp_nesp", true, true, Priors::kFull, false},
-    {"acmmp_nesp", true, true, Priors::kFull, true},
+    {"acmh", false, false, Priors::kNone, false, false},
+    {"nsp", true, false, Priors::kNone, false, false},
+    {"esp", false, true, Priors::kNone, false, false},
+    {"nesp", true, true, Priors::kNone, false, false},
+    {"nesp_pa", true, true, Priors::kFull, false, false},
+    {"hpm_fast_no_nesp", false, false, Priors::kCoarsest, true, false},
+    {"hpm_no_nesp", false, false, Priors::kAll, true, false},
+    {"hpm_fast", true, true, Priors::kCoarsest, true, false},
+    {"hpm", true, true, Priors::kAll, true, false},
+    {"acmm", false, false, Priors::kNone, false, true},
+    {"acmp", false, false, Priors::kFull, false, false},
+    {"acmmp", false, false, Priors::kFull, false, true},
+    {"acmm_nesp", true, true, Priors::kNone, false, true},
+    {"acmp_nesp", true, true, Priors::kFull, false, false},
+    {"acmmp_nesp", true, true, Priors::kFull, false, true},
 };
 
 // Levels at which priors are built, coarsest first.
 std::vector<int> PriorLevels(Priors priors, int num_levels) {
-  switch (priors) {
-    case Priors::kNone:
-      return {};
-    case Priors::kFull:
-      return {0};
-    case Priors::kCoarsest:
-      return {num_levels - 1};
-    case Priors::kAll:
-      break;
-  }
+  if (priors == Priors::kNone) return {};
+  if (priors == Priors::kFull) return {0};
   std::vector<int> levels;
-  for (int level = num_levels - 1; level >= 0; --level) levels.push_back(level);
+  for (int level = num_levels - 1; level >= 1; --level) levels.push_back(level);
+  if (priors == Priors::kCoarsest && !levels.empty()) levels.resize(1);
   return levels;
 }
 
@@ -85,14 +79,23 @@ Schedule MakeSchedule(const ScheduleOptions& options) {
                                       prior_level});
       }
       schedule.stages.push_back(photometric);
-      for (int i = 0; i < options.num_geom_passes; ++i) {
+      const int num_geom_passes = method.priors == Priors::kCoarsest
+                                      ? (options.num_geom_passes + 1) / 2
+                                      : options.num_geom_passes;
+      for (int i = 0; i < num_geom_passes; ++i) {
         StageSpec geometric;
         geometric.level = level;
         geometric.geometric = true;
         geometric.passes.push_back({PassKind::kGeometric,
                                     StartFrom::kCurrent,
                                     options.num_geom_iterations,
-                                    id++});
+                                    id++,
+                                    0,
+                                    true,
+                                    !method.regions ? RegionPriors::kNone
+                                    : i + 1 == num_geom_passes
+                                        ? RegionPriors::kStrong
+                                        : RegionPriors::kWeak});
         schedule.stages.push_back(geometric);
       }
     }

@@ -12,8 +12,8 @@ namespace hpm {
 struct ScheduleOptions {
   std::string method = "hpm";
   int num_iterations = 3;       // of basic and prior passes
-  int num_geom_iterations = 3;  // of geometric passes
-  int num_geom_passes = 2;      // 0: photometric only
+  int num_geom_iterations = 2;  // of geometric passes
+  int num_geom_passes = 2;      // 0: photometric only; hpm_fast takes half
   int num_levels = 1;           // of the prior hierarchy or the image pyramid
 };
 

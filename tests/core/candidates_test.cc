@@ -4,6 +4,7 @@
 #include "tests/core/fake_cost.h"
 #include "tests/core/test_cameras.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -106,7 +107,10 @@ constexpr int kMiddle = 100;
 // A field of pixels whose planes carry their index as distance.
 class CollectCandidatesTest : public testing::Test {
  protected:
-  CollectCandidatesTest() : planes_(kSide * kSide), costs_(kSide * kSide, 1) {
+  CollectCandidatesTest()
+      : planes_(kSide * kSide),
+        costs_(kSide * kSide, 1),
+        masks_(kSide * kSide, 0b11) {
     for (int i = 0; i < kSide * kSide; ++i) {
       planes_[i] = {{0, 0, -1}, static_cast<float>(i)};
     }
@@ -120,13 +124,14 @@ class CollectCandidatesTest : public testing::Test {
                      int col = kMiddle,
                      int row = kMiddle) {
     const PixelState state = {
-        kSide, kSide, planes_.data(), costs_.data(), nullptr, nullptr};
+        kSide, kSide, planes_.data(), costs_.data(), masks_.data(), nullptr};
     Candidates candidates;
     CollectCandidates(params_,
                       MakeSamplingPattern(true, extensible),
                       state,
                       cost,
                       0,
+                      draw_,
                       col,
                       row,
                       &candidates);
@@ -146,6 +151,8 @@ class CollectCandidatesTest : public testing::Test {
   VisitParams params_ = {};
   std::vector<Plane> planes_;
   std::vector<float> costs_;
+  mutable std::vector<uint32_t> masks_;
+  float draw_ = 0;
   const FakeCost convincing_ = {[](const Plane&, int) { return 0.1f; }};
   const FakeCost doubtful_ = {[](const Plane&, int) { return 1.0f; }};
 };
@@ -247,6 +254,30 @@ TEST_F(CollectCandidatesTest, NearlyEqualCandidatesShareOneRowOfCosts) {
     for (int j = 0; j < 2; ++j) {
       EXPECT_EQ(candidates.matrix[i * 2 + j],
                 cost.photometric(candidates.plane[i], j));
+    }
+  }
+}
+
+// Views that no neighbour trusts cost time, and with them come the occlusions.
+TEST_F(CollectCandidatesTest, AsksTrustedViewsAndOneMoreInTurn) {
+  params_.num_views = 8;
+  masks_.assign(masks_.size(), 0b10000000);
+  masks_[Index(kMiddle, kMiddle)] = 0b10;
+  const int d = MakeSamplingPattern(true, false).mask_distance;
+  masks_[Index(kMiddle - d, kMiddle)] = 0b100;
+  const FakeCost cost = {
+      [](const Plane&, int view) { return 0.01f * static_cast<float>(view); }};
+  for (const int turn : {0, 5}) {
+    draw_ = (static_cast<float>(turn) + 0.5f) / 8;
+    const Candidates candidates = Collect(false, cost);
+    std::vector<int> views(candidates.view,
+                           candidates.view + candidates.num_views);
+    std::vector<int> expected = {1, 2, 7, turn};
+    std::sort(expected.begin(), expected.end());
+    EXPECT_EQ(views, expected);
+    for (int k = 0; k < candidates.num_views; ++k) {
+      EXPECT_EQ(candidates.matrix[3 * candidates.num_views + k],
+                0.01f * static_cast<float>(views[k]));
     }
   }
 }

@@ -31,7 +31,7 @@ struct DeviceCost {
         [&](int x, int y) {
           return static_cast<float>(v.ref_image[y * v.ref.width + x]);
         },
-        [&](float d) { return expf(-d * v.shape.color_falloff); },
+        [&](float d) { return ColorWeight(v.shape, d); },
         c,
         r);
   }
@@ -59,6 +59,10 @@ struct DeviceCost {
             warp.height);
       }
     }
+  }
+
+  __device__ float Grey(int x, int y) const {
+    return static_cast<float>(views.ref_image[y * views.ref.width + x]);
   }
 
   __device__ bool HasDepth(int view) const {

@@ -23,7 +23,7 @@ float Pattern(float u, float v) {
          40 * std::cos(0.3f * v - 0.1f * u);
 }
 
-PatchShape DefaultShape() { return MakePatchShape(5, 5, 3); }
+PatchShape DefaultShape() { return MakePatchShape(5, 5, 3, 15); }
 
 RefPatch PatchOf(const PatchShape& shape,
                  const GreyFunction& grey,
@@ -34,7 +34,7 @@ RefPatch PatchOf(const PatchShape& shape,
       [&](int c, int r) {
         return grey(static_cast<float>(c), static_cast<float>(r));
       },
-      [&](float d) { return std::exp(-d * shape.color_falloff); },
+      [&](float d) { return ColorWeight(shape, d); },
       col,
       row);
 }
@@ -59,7 +59,7 @@ TEST(MatchCost, WindowOfRadiusFiveHas36SamplesTwoPixelsApart) {
 
 TEST(MatchCost, WindowReachesItsRadiusAndIsSymmetric) {
   for (int radius = 1; radius <= 20; ++radius) {
-    const PatchShape shape = MakePatchShape(radius, 5, 3);
+    const PatchShape shape = MakePatchShape(radius, 5, 3, 15);
     EXPECT_EQ(shape.offset[0], -radius);
     EXPECT_EQ(shape.offset[kPatchAxis - 1], radius);
     for (int i = 0; i < kPatchAxis; ++i) {
@@ -83,7 +83,8 @@ TEST(MatchCost, PatchHoldsWeightsMeanAndVarianceOfItsDefinition) {
       const double grey =
           Pattern(30 + static_cast<float>(x), 20 + static_cast<float>(y));
       const double w = std::exp(-std::hypot(x, y) / 50 -
-                                std::abs(grey - Pattern(30, 20)) / 18);
+                                std::abs(grey - Pattern(30, 20)) / 18 -
+                                std::pow(grey - Pattern(30, 20), 2) / 450);
       weights.push_back(w);
       sum += w;
       mean += w * grey;

@@ -29,13 +29,14 @@ class UpdatePixelTest : public testing::Test {
   UpdatePixelTest()
       : planes_(kSide * kSide, Plane{{0, 0, -1}, 3}),
         costs_(kSide * kSide, 1.0f),
-        masks_(kSide * kSide, 0),
+        masks_(kSide * kSide, 0b111),
         priors_(kSide * kSide, Plane{{0, 0, 0}, 0}) {
     params_.ref = MakeTestCamera(kSide, kSide, 1000, 0, {0, 0, 0});
     params_.num_views = 3;
     params_.depth_min = 2;
     params_.depth_max = 6;
     params_.num_view_draws = 15;
+    params_.max_drawn_views = 32;
     params_.depth_perturbation = 0.02f;
     params_.normal_perturbation = 0.0314f;
     params_.geometric_term = {0.1f, 5};
@@ -91,7 +92,7 @@ TEST_F(UpdatePixelTest, StoredCostIsThatOfTheStoredPlane) {
 
 TEST_F(UpdatePixelTest, RepeatedVisitsNeverGetWorseAndConverge) {
   float before = WallCost(Here(), 0);
-  for (uint64_t key = 0; key < 300; ++key) {
+  for (uint64_t key = 0; key < 500; ++key) {
     Visit(wall_, key);
     ASSERT_LE(CostHere(), before);
     before = CostHere();

@@ -69,7 +69,11 @@ TEST(ViewLikelihood, ReadsTheColumnOfItsView) {
 std::vector<float> Draws(const std::vector<float>& probability,
                          int num_draws,
                          float offset) {
+  uint8_t views[kMaxViews];
+  for (size_t j = 0; j < probability.size(); ++j)
+    views[j] = static_cast<uint8_t>(j);
   const ViewWeights weights = DrawViews(probability.data(),
+                                        views,
                                         static_cast<int>(probability.size()),
                                         num_draws,
                                         offset);
@@ -85,6 +89,30 @@ std::vector<float> Draws(const std::vector<float>& probability,
   EXPECT_EQ(sum, weights.weight_sum);
   EXPECT_EQ(mask, weights.mask);
   return draws;
+}
+
+TEST(DrawViews, NamesTheViewsItWasGiven) {
+  const float probability[3] = {0.5f, 0, 0.5f};
+  const uint8_t views[3] = {4, 9, 17};
+  const ViewWeights weights = DrawViews(probability, views, 3, 10, 0.5f);
+  ASSERT_EQ(weights.num_views, 2);
+  EXPECT_EQ(weights.view[0], 4);
+  EXPECT_EQ(weights.view[1], 17);
+  EXPECT_EQ(weights.slot[1], 2);
+  EXPECT_EQ(weights.mask, 1u << 4 | 1u << 17);
+}
+
+TEST(KeepLargest, ZeroesAllButTheLargest) {
+  float p[5] = {0.3f, 0.1f, 0, 0.4f, 0.2f};
+  KeepLargest(2, 5, p);
+  EXPECT_EQ(std::vector<float>(p, p + 5),
+            (std::vector<float>{0.3f, 0, 0, 0.4f, 0}));
+}
+
+TEST(KeepLargest, LeavesFewerAlone) {
+  float p[3] = {0.3f, 0, 0.4f};
+  KeepLargest(2, 3, p);
+  EXPECT_EQ(std::vector<float>(p, p + 3), (std::vector<float>{0.3f, 0, 0.4f}));
 }
 
 const std::vector<float> kProbability = {0.2f, 0, 1.3f, 0.05f, 0.45f, 0, 2.0f};

@@ -48,7 +48,8 @@ double TextbookCost(
                         std::clamp(r, 0, ref.image->height - 1));
       const double w =
           std::exp(-std::hypot(dx, dy) / 50 -
-                   std::abs(grey - ref.image->at(col, row)) / 18.0);
+                   std::abs(grey - ref.image->at(col, row)) / 18.0 -
+                   std::pow(grey - ref.image->at(col, row), 2) / 450.0);
       const Eigen::Vector3d ray((c - ref.camera.cx) / ref.camera.fx,
                                 (r - ref.camera.cy) / ref.camera.fy,
                                 1);

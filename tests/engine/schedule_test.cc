@@ -91,13 +91,43 @@ std::vector<int> PriorLevels(const std::string& method, int num_levels) {
 }
 
 TEST(Schedule, HpmBuildsPriorsFromCoarseToFine) {
-  EXPECT_THAT(PriorLevels("hpm", 3), testing::ElementsAre(2, 1, 0));
-  EXPECT_THAT(PriorLevels("hpm", 1), testing::ElementsAre(0));
+  EXPECT_THAT(PriorLevels("hpm", 3), testing::ElementsAre(2, 1));
+  EXPECT_THAT(PriorLevels("hpm", 1), testing::IsEmpty());
 }
 
 TEST(Schedule, HpmFastBuildsTheCoarsestPriorOnly) {
   EXPECT_THAT(PriorLevels("hpm_fast", 3), testing::ElementsAre(2));
-  EXPECT_THAT(PriorLevels("hpm_fast", 1), testing::ElementsAre(0));
+  EXPECT_THAT(PriorLevels("hpm_fast", 1), testing::IsEmpty());
+}
+
+TEST(Schedule, HpmMinesRegionsInGeometricPassesAndOthersDoNot) {
+  for (const std::string& method : MethodNames()) {
+    for (const StageSpec& stage : MakeSchedule(Options(method)).stages) {
+      for (const Pass& pass : stage.passes) {
+        EXPECT_EQ(pass.regions != RegionPriors::kNone,
+                  stage.geometric && method.rfind("hpm", 0) == 0)
+            << method;
+      }
+    }
+  }
+}
+
+TEST(Schedule, OnlyTheLastPassHasStrongRegionPriors) {
+  const Schedule schedule = MakeSchedule(Options("hpm"));
+  for (const StageSpec& stage : schedule.stages) {
+    for (const Pass& pass : stage.passes) {
+      EXPECT_EQ(pass.regions == RegionPriors::kStrong,
+                &stage == &schedule.stages.back());
+    }
+  }
+}
+
+TEST(Schedule, HpmFastTakesHalfTheGeometricPasses) {
+  const auto num_stages = [](const std::string& method) {
+    return MakeSchedule(Options(method)).stages.size();
+  };
+  EXPECT_EQ(num_stages("hpm"), 3u);
+  EXPECT_EQ(num_stages("hpm_fast"), 2u);
 }
 
 TEST(Schedule, NespHasNoPriors) {

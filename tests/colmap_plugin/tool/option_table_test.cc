@@ -122,10 +122,14 @@ TEST(OptionTableTest, EveryMemberOfHpmOptionsIsAnOption) {
   // A new member breaks this line: give it a row in the table, then a name
   // here.
   const auto& [method,
+               quality,
                cpu_target,
                num_iterations,
                num_geom_iterations,
                num_geom_passes,
+               max_views,
+               weak_gradient,
+               smoothness,
                geom_weight,
                geom_max_error,
                num_levels,
@@ -136,7 +140,12 @@ TEST(OptionTableTest, EveryMemberOfHpmOptionsIsAnOption) {
   (void)num_geom_passes, (void)geom_weight, (void)geom_max_error,
       (void)num_levels;
   (void)previews, (void)overwrite;
+  (void)quality, (void)max_views, (void)weak_gradient, (void)smoothness;
   for (const char* name : {"method",
+                           "quality",
+                           "max_views",
+                           "weak_gradient",
+                           "smoothness",
                            "cpu_target",
                            "num_iterations",
                            "num_geom_iterations",
@@ -242,6 +251,13 @@ const std::vector<Values>& ValueTable() {
       {"Hpm.num_geom_iterations", {"1", "2"}, {"0"}, ">= 1"},
       {"Hpm.num_geom_passes", {"1", "2"}, {"0"}, ">= 1"},
       {"Hpm.geom_weight", {"0", "0.1"}, {"-0.1", "nan"}, ">= 0"},
+      {"Hpm.quality",
+       {"low", "medium", "high", "extreme"},
+       {"High", ""},
+       "low, medium, high, extreme"},
+      {"Hpm.max_views", {"1", "32"}, {"0", "33"}, "1 to 32"},
+      {"Hpm.weak_gradient", {"0", "2.5"}, {"-1"}, ">= 0"},
+      {"Hpm.smoothness", {"0", "0.4"}, {"-0.1"}, ">= 0"},
       {"Hpm.geom_max_error", {"0", "5"}, {"-1"}, ">= 0"},
       {"Hpm.num_levels", {"-1", "8"}, {"-2", "9", "1.5"}, "-1 to 8"},
       bools("Hpm.previews"),

@@ -191,6 +191,24 @@ TEST(ParseOptionsTest, GeometricOptionsOfColmapCarryOverOnlyWhenGivenAlone) {
   EXPECT_THAT(refused.problems, SizeIs(1));
 }
 
+TEST(ParseOptionsTest, QualitySetsWhatIsNotGiven) {
+  const auto hpm = [](const std::vector<std::string>& arguments) {
+    return Parse(arguments).options.controller.hpm;
+  };
+  const HpmOptions defaults;
+  const HpmOptions high = hpm({"--Hpm.quality", "high"});
+  EXPECT_EQ(high.num_iterations, defaults.num_iterations);
+  EXPECT_EQ(high.num_geom_passes, defaults.num_geom_passes);
+  EXPECT_EQ(high.num_geom_iterations, defaults.num_geom_iterations);
+  EXPECT_EQ(high.max_views, defaults.max_views);
+  const HpmOptions low =
+      hpm({"--Hpm.quality", "low", "--Hpm.num_geom_passes", "5"});
+  EXPECT_LT(low.num_iterations, defaults.num_iterations);
+  EXPECT_LT(low.max_views, defaults.max_views);
+  EXPECT_EQ(low.num_geom_passes, 5);
+  EXPECT_THAT(Parse({"--Hpm.quality", "best"}).problems, SizeIs(1));
+}
+
 TEST(ParseOptionsTest, OptionsWithoutEffectAreNotedOnlyWhenTheyDiffer) {
   EXPECT_THAT(Parse({"--PatchMatchStereo.sigma_color",
                      "0.2",

@@ -1,0 +1,48 @@
+#include "src/engine/mine_regions.h"
+
+#include "src/engine/visit_params.h"
+#include "src/prior/region_planes.h"
+
+#include <algorithm>
+
+namespace hpm {
+
+std::vector<Plane> MineRegions(Backend* backend,
+                               const ViewSet& views,
+                               const MethodParams& params,
+                               const HypothesisMap& map,
+                               uint64_t key,
+                               const RunControl& control) {
+  const auto num_depths =
+      std::count_if(views.srcs.begin(), views.srcs.end(), [](const View& src) {
+        return src.inverse_depth != nullptr;
+      });
+  if (num_depths == 0 || !(params.region_max_gradient > 0)) return {};
+  const WeakRegions regions = FindWeakRegions(
+      *views.ref.image, params.region_max_gradient, params.region_min_share);
+  if (regions.num_regions == 0) return {};
+  const FilterParams consistency = {-1, 0, params.region_max_error, 0};
+  const std::vector<uint32_t> consistent =
+      backend->ConsistentViews(map, consistency, true, control);
+  const int needed =
+      std::min(params.region_min_consistent, static_cast<int>(num_depths));
+  std::vector<float> inverse_depths(map.planes.size(), 0.0f);
+  for (int row = 0; row < map.height; ++row) {
+    for (int col = 0; col < map.width; ++col) {
+      const size_t at = static_cast<size_t>(row) * map.width + col;
+      if (__builtin_popcount(consistent[at]) < needed) continue;
+      inverse_depths[at] = 1 / DepthAt(views.ref.camera,
+                                       map.planes[at],
+                                       static_cast<float>(col),
+                                       static_cast<float>(row));
+    }
+  }
+  return MakeRegionPlanes(regions,
+                          views.ref.camera,
+                          inverse_depths,
+                          params.region_max_residual / Parallax(views),
+                          {views.depth_min, views.depth_max},
+                          CombineBits(views.random_key, key));
+}
+
+}  // namespace hpm

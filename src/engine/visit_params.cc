@@ -1,0 +1,54 @@
+#include "src/engine/visit_params.h"
+
+#include <algorithm>
+
+namespace hpm {
+float Parallax(const ViewSet& views) {
+  float parallax = 0;
+  for (const View& src : views.srcs) {
+    const Vec3f baseline =
+        src.camera.R * (Center(views.ref.camera) - Center(src.camera));
+    parallax = std::max(
+        parallax, std::max(src.camera.fx, src.camera.fy) * Norm(baseline));
+  }
+  return parallax;
+}
+
+VisitParams MakeVisitParams(const ViewSet& views, const MethodParams& params) {
+  VisitParams visit = {};
+  visit.ref = views.ref.camera;
+  visit.num_views = static_cast<int>(views.srcs.size());
+  visit.depth_min = views.depth_min;
+  visit.depth_max = views.depth_max;
+  visit.num_view_draws = params.num_view_draws;
+  visit.max_drawn_views = params.max_drawn_views;
+  visit.depth_perturbation = params.depth_perturbation;
+  visit.normal_perturbation = params.normal_perturbation;
+  visit.same_plane_bound = params.same_plane_bound;
+  visit.parallax = Parallax(views);
+  visit.patch_radius = params.patch_radius;
+  visit.geometric_term = {params.geom_weight, params.geom_max_error};
+  visit.prior_term = {
+      params.prior_gamma,
+      params.prior_beta,
+      params.prior_depth_share * (views.depth_max - views.depth_min),
+      params.prior_angle};
+  visit.smoothness = {params.smoothness_weight,
+                      params.smoothness_max_error,
+                      params.smoothness_sigma_color};
+  return visit;
+}
+
+VisitParams ForPass(VisitParams visit,
+                    const MethodParams& params,
+                    const Pass& pass) {
+  visit.geometric = pass.kind == PassKind::kGeometric;
+  visit.search_near = visit.geometric;
+  // Smoothing before the views have been compared fixes mistakes in place.
+  if (!visit.geometric) visit.smoothness.weight = 0;
+  if (pass.regions == RegionPriors::kStrong)
+    visit.prior_term.gamma = params.region_gamma;
+  return visit;
+}
+
+}  // namespace hpm

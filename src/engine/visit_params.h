@@ -1,0 +1,22 @@
+// The numbers of a pixel visit that follow from a problem and the method's
+// parameters, the same for every backend.
+#pragma once
+
+#include "src/core/visit.h"
+#include "src/engine/pass.h"
+#include "src/engine/view.h"
+
+namespace hpm {
+
+VisitParams MakeVisitParams(const ViewSet& views, const MethodParams& params);
+
+// Pixels that a source position moves per unit of -1/z of the plane, about: the
+// largest focal length times baseline.
+float Parallax(const ViewSet& views);
+
+// The same for a pass of this kind.
+VisitParams ForPass(VisitParams visit,
+                    const MethodParams& params,
+                    const Pass& pass);
+
+}  // namespace hpm

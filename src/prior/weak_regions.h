@@ -1,0 +1,24 @@
+// Connected regions of the reference image without texture: there a matching
+// cost says little, and one surface usually fills the region.
+#pragma once
+
+#include "src/image/gray_image.h"
+
+#include <vector>
+
+namespace hpm {
+
+struct WeakRegions {
+  int width = 0, height = 0;
+  int num_regions = 0;
+  std::vector<int> label;  // row-major, 0 = textured, regions from 1
+};
+
+// Pixels whose gradient, after a slight blur against noise, stays under
+// `max_gradient` (grey levels per pixel) and that belong to a 4-connected
+// region of at least `min_share` of the image.
+WeakRegions FindWeakRegions(const GrayImage& image,
+                            float max_gradient,
+                            float min_share);
+
+}  // namespace hpm
