@@ -17,9 +17,6 @@ MethodParams MakeMethodParams(const ControllerOptions& options) {
   params.max_drawn_views = options.hpm.max_views;
   params.region_max_gradient = static_cast<float>(options.hpm.weak_gradient);
   params.smoothness_weight = static_cast<float>(options.hpm.smoothness);
-  if (const char* t = getenv("RG"))
-    params.region_gamma = static_cast<float>(atof(t));
-  if (const char* t = getenv("GP")) params.region_min_consistent = atoi(t);
   return params;
 }
 
@@ -29,7 +26,8 @@ ScheduleOptions MakeScheduleOptions(const ControllerOptions& options) {
       options.hpm.num_iterations,
       options.hpm.num_geom_iterations,
       options.patch_match.geom_consistency ? options.hpm.num_geom_passes : 0,
-      options.hpm.num_levels};
+      options.hpm.num_levels,
+      options.hpm.prior == "regions"};
 }
 
 FilterParams MakeFilterParams(const PatchMatchStereoOptions& options,

@@ -49,11 +49,12 @@ struct HpmOptions {
       3;  // red/black iterations of a photometric or prior pass
   int num_geom_iterations = 2;  // of a geometric pass
   int num_geom_passes = 2;
-  int max_views = 4;          // source views that judge a pixel in a visit
-  double weak_gradient = 2;   // grey levels per pixel; 0: no region priors
-  double smoothness = 0.4;    // weight in geometric passes; 0: off
-  double geom_weight = 0.1;   // lambda of the geometric term
-  double geom_max_error = 5;  // pixels, cap of the geometric term
+  int max_views = 4;              // source views that judge a pixel in a visit
+  std::string prior = "regions";  // of hpm: regions, or the paper's triangles
+  double weak_gradient = 2;       // grey levels per pixel
+  double smoothness = 0.4;        // weight in geometric passes; 0: off
+  double geom_weight = 0.1;       // lambda of the geometric term
+  double geom_max_error = 5;      // pixels, cap of the geometric term
   int num_levels = -1;     // levels of the prior hierarchy; -1: by image size
   bool previews = false;   // colour pictures of the maps in stereo/previews
   bool overwrite = false;  // recompute maps that are complete

@@ -174,9 +174,11 @@ std::vector<OptionSpec> MakeTable() {
       Hpm(kExpert, "num_geom_passes", &H::num_geom_passes, AtLeast(1), "Geometric passes"),
       Hpm(kExpert, "max_views", &H::max_views, Between(1, kMaxViews),
           "Source images that judge a pixel at a time, chosen anew in every iteration"),
+      Hpm(kExpert, "prior", &H::prior, OneOf({"regions", "triangles"}),
+          "What hpm and hpm_fast mine: planes of untextured regions on which the views agree, at "
+          "every level; or the paper's triangles of credible points"),
       Hpm(kExpert, "weak_gradient", &H::weak_gradient, AtLeast(0),
-          "Grey levels per pixel under which a region counts as untextured and hpm fits planes to "
-          "it; 0: never"),
+          "Grey levels per pixel under which a region counts as untextured"),
       Hpm(kExpert, "smoothness", &H::smoothness, AtLeast(0),
           "Cost in geometric passes of a plane that its neighbourhood does not continue; 0: off"),
       Hpm(kExpert, "geom_weight", &H::geom_weight, AtLeast(0),

@@ -14,36 +14,126 @@ struct Method {
   bool non_local;   // N of the paper's ablation
   bool extensible;  // E
   Priors priors;
-  bool regions;  // priors for weak regions in geometric passes
   bool pyramid;  // runs on images of all levels, coarse to fine (ACMM)
 };
 
 constexpr Method kMethods[] = {
-    {"acmh", false, false, Priors::kNone, false, false},
-    {"nsp", true, false, Priors::kNone, false, false},
-    {"esp", false, true, Priors::kNone, false, false},
-    {"nesp", true, true, Priors::kNone, false, false},
-    {"nesp_pa", true, true, Priors::kFull, false, false},
-    {"hpm_fast_no_nesp", false, false, Priors::kCoarsest, true, false},
-    {"hpm_no_nesp", false, false, Priors::kAll, true, false},
-    {"hpm_fast", true, true, Priors::kCoarsest, true, false},
-    {"hpm", true, true, Priors::kAll, true, false},
-    {"acmm", false, false, Priors::kNone, false, true},
-    {"acmp", false, false, Priors::kFull, false, false},
-    {"acmmp", false, false, Priors::kFull, false, true},
-    {"acmm_nesp", true, true, Priors::kNone, false, true},
-    {"acmp_nesp", true, true, Priors::kFull, false, false},
-    {"acmmp_nesp", true, true, Priors::kFull, false, true},
+    {"acmh", false, false, Priors::kNone, false},
+    {"nsp", true, false, Priors::kNone, false},
+    {"esp", false, true, Priors::kNone, false},
+    {"nesp", true, true, Priors::kNone, false},
+    {"nesp_pa", true, true, Priors::kFull, false},
+    {"hpm_fast_no_nesp", false, false, Priors::kCoarsest, false},
+    {"hpm_no_nesp", false, false, Priors::kAll, false},
+    {"hpm_fast", true, true, Priors::kCoarsest, false},
+    {"hpm", true, true, Priors::kAll, false},
+    {"acmm", false, false, Priors::kNone, true},
+    {"acmp", false, false, Priors::kFull, false},
+    {"acmmp", false, false, Priors::kFull, true},
+    {"acmm_nesp", true, true, Priors::kNone, true},
+    {"acmp_nesp", true, true, Priors::kFull, false},
+    {"acmmp_nesp", true, true, Priors::kFull, true},
 };
 
-// Levels at which priors are built, coarsest first.
+// Levels at which triangles make priors, coarsest first.
 std::vector<int> PriorLevels(Priors priors, int num_levels) {
-  if (priors == Priors::kNone) return {};
-  if (priors == Priors::kFull) return {0};
+  switch (priors) {
+    case Priors::kNone:
+      return {};
+    case Priors::kFull:
+      return {0};
+    case Priors::kCoarsest:
+      return {num_levels - 1};
+    case Priors::kAll:
+      break;
+  }
   std::vector<int> levels;
-  for (int level = num_levels - 1; level >= 1; --level) levels.push_back(level);
-  if (priors == Priors::kCoarsest && !levels.empty()) levels.resize(1);
+  for (int level = num_levels - 1; level >= 0; --level) levels.push_back(level);
   return levels;
+}
+
+// Appends the stages of one method, coarse to fine.
+class StageList {
+ public:
+  StageList(const ScheduleOptions& options, std::vector<StageSpec>* stages)
+      : options_(options), stages_(stages) {}
+
+  // Basic passes, then prior-assisted ones on the triangles of `prior_levels`.
+  void AddPhotometric(int level,
+                      bool from_coarser,
+                      int num_iterations,
+                      const std::vector<int>& prior_levels) {
+    StageSpec stage;
+    stage.level = level;
+    stage.from_coarser = from_coarser;
+    stage.passes.push_back(
+        {PassKind::kBasic,
+         from_coarser ? StartFrom::kCurrent : StartFrom::kRandom,
+         num_iterations,
+         next_id_++});
+    for (const int prior_level : prior_levels) {
+      stage.passes.push_back({PassKind::kPrior,
+                              StartFrom::kPrior,
+                              options_.num_iterations,
+                              next_id_++,
+                              prior_level});
+    }
+    stages_->push_back(stage);
+  }
+
+  void AddGeometric(int level, RegionPriors regions) {
+    StageSpec stage;
+    stage.level = level;
+    stage.geometric = true;
+    Pass pass = {PassKind::kGeometric,
+                 StartFrom::kCurrent,
+                 options_.num_geom_iterations,
+                 next_id_++};
+    pass.regions = regions;
+    stage.passes.push_back(pass);
+    stages_->push_back(stage);
+  }
+
+ private:
+  const ScheduleOptions& options_;
+  std::vector<StageSpec>* stages_;
+  int next_id_ = 0;
+};
+
+// The paper's methods.
+void AddStages(const Method& method,
+               const ScheduleOptions& options,
+               StageList* list) {
+  const int coarsest = method.pyramid ? options.num_levels - 1 : 0;
+  for (int level = coarsest; level >= 0; --level) {
+    list->AddPhotometric(level,
+                         level < coarsest,
+                         options.num_iterations,
+                         PriorLevels(method.priors, options.num_levels));
+    for (int i = 0; i < options.num_geom_passes; ++i)
+      list->AddGeometric(level, RegionPriors::kNone);
+  }
+}
+
+// Priors mined from what the views agree on, at every level of the images: a
+// coarse level sees walls that a fine one does not, and hands them down.
+void AddRegionStages(const Method& method,
+                     const ScheduleOptions& options,
+                     StageList* list) {
+  const int num_geom_passes = method.priors == Priors::kCoarsest
+                                  ? (options.num_geom_passes + 1) / 2
+                                  : options.num_geom_passes;
+  const int coarsest = options.num_levels - 1;
+  for (int level = coarsest; level >= 0; --level) {
+    const bool is_coarsest = level == coarsest;
+    list->AddPhotometric(
+        level, !is_coarsest, is_coarsest ? options.num_iterations : 1, {});
+    for (int i = 0; i < num_geom_passes; ++i) {
+      const bool last = level == 0 && i + 1 == num_geom_passes;
+      list->AddGeometric(level,
+                         last ? RegionPriors::kStrong : RegionPriors::kWeak);
+    }
+  }
 }
 
 }  // namespace
@@ -59,45 +149,13 @@ Schedule MakeSchedule(const ScheduleOptions& options) {
     if (options.method != method.name) continue;
     Schedule schedule;
     schedule.pattern = MakeSamplingPattern(method.non_local, method.extensible);
-    int id = 0;
-    const int coarsest = method.pyramid ? options.num_levels - 1 : 0;
-    for (int level = coarsest; level >= 0; --level) {
-      StageSpec photometric;
-      photometric.level = level;
-      photometric.from_coarser = level < coarsest;
-      photometric.passes.push_back(
-          {PassKind::kBasic,
-           photometric.from_coarser ? StartFrom::kCurrent : StartFrom::kRandom,
-           options.num_iterations,
-           id++});
-      for (const int prior_level :
-           PriorLevels(method.priors, options.num_levels)) {
-        photometric.passes.push_back({PassKind::kPrior,
-                                      StartFrom::kPrior,
-                                      options.num_iterations,
-                                      id++,
-                                      prior_level});
-      }
-      schedule.stages.push_back(photometric);
-      const int num_geom_passes = method.priors == Priors::kCoarsest
-                                      ? (options.num_geom_passes + 1) / 2
-                                      : options.num_geom_passes;
-      for (int i = 0; i < num_geom_passes; ++i) {
-        StageSpec geometric;
-        geometric.level = level;
-        geometric.geometric = true;
-        geometric.passes.push_back({PassKind::kGeometric,
-                                    StartFrom::kCurrent,
-                                    options.num_geom_iterations,
-                                    id++,
-                                    0,
-                                    true,
-                                    !method.regions ? RegionPriors::kNone
-                                    : i + 1 == num_geom_passes
-                                        ? RegionPriors::kStrong
-                                        : RegionPriors::kWeak});
-        schedule.stages.push_back(geometric);
-      }
+    StageList list(options, &schedule.stages);
+    const bool hierarchy =
+        method.priors == Priors::kCoarsest || method.priors == Priors::kAll;
+    if (hierarchy && options.region_priors) {
+      AddRegionStages(method, options, &list);
+    } else {
+      AddStages(method, options, &list);
     }
     return schedule;
   }
@@ -111,7 +169,7 @@ Schedule MakeSchedule(const ScheduleOptions& options) {
 }
 
 int AutomaticLevels(int side) {
-  constexpr int kCoarsestSide = 1000;
+  constexpr int kCoarsestSide = 500;
   int num_levels = 1;
   for (; side > kCoarsestSide; side /= 2) ++num_levels;
   return num_levels;

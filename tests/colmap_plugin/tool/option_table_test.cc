@@ -128,6 +128,7 @@ TEST(OptionTableTest, EveryMemberOfHpmOptionsIsAnOption) {
                num_geom_iterations,
                num_geom_passes,
                max_views,
+               prior,
                weak_gradient,
                smoothness,
                geom_weight,
@@ -140,10 +141,12 @@ TEST(OptionTableTest, EveryMemberOfHpmOptionsIsAnOption) {
   (void)num_geom_passes, (void)geom_weight, (void)geom_max_error,
       (void)num_levels;
   (void)previews, (void)overwrite;
-  (void)quality, (void)max_views, (void)weak_gradient, (void)smoothness;
+  (void)quality, (void)prior, (void)max_views, (void)weak_gradient,
+      (void)smoothness;
   for (const char* name : {"method",
                            "quality",
                            "max_views",
+                           "prior",
                            "weak_gradient",
                            "smoothness",
                            "cpu_target",
@@ -256,6 +259,10 @@ const std::vector<Values>& ValueTable() {
        {"High", ""},
        "low, medium, high, extreme"},
       {"Hpm.max_views", {"1", "32"}, {"0", "33"}, "1 to 32"},
+      {"Hpm.prior",
+       {"regions", "triangles"},
+       {"none", ""},
+       "regions, triangles"},
       {"Hpm.weak_gradient", {"0", "2.5"}, {"-1"}, ">= 0"},
       {"Hpm.smoothness", {"0", "0.4"}, {"-0.1"}, ">= 0"},
       {"Hpm.geom_max_error", {"0", "5"}, {"-1"}, ">= 0"},
