@@ -35,7 +35,10 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS colmap)
-set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "${PROJECT_DESCRIPTION}
- hpm_mvs computes the depth and normal maps of a COLMAP dense workspace: the same
- options, the same files in, the same files out, and no GPU needed.")
+set(CPACK_PACKAGE_DESCRIPTION "hpm_mvs computes the depth and normal maps of a COLMAP dense workspace: the same
+options, the same files in, the same files out, and no GPU needed.")
+if(HPM_CGAL)
+  string(APPEND CPACK_PACKAGE_DESCRIPTION "
+This build triangulates with CGAL, so the package may be passed on only under the GPL.")
+endif()
 include(CPack)

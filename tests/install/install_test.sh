@@ -2,12 +2,11 @@
 # What users get: `cmake --install` into a prefix, find_package(hpm_mvs) from another
 # project, and the Debian package. usage: install_test.sh BUILD_FOLDER FOLDER
 set -euo pipefail
-cd "$(dirname "$0")"
 build=$(realpath "${1:?usage: install_test.sh BUILD_FOLDER FOLDER}")
-work=${2:?usage: install_test.sh BUILD_FOLDER FOLDER}
+work=$(realpath -m "${2:?usage: install_test.sh BUILD_FOLDER FOLDER}")
+cd "$(dirname "$0")"
 rm -rf "$work"
 mkdir -p "$work"
-work=$(realpath "$work")
 prefix=$work/prefix
 fail() { echo "FAILED: $*" >&2; exit 1; }
 
@@ -36,9 +35,9 @@ complete_line() { # WORD... : the last one is completed
 [[ $(complete_line hpm_mvs pat) == patch_match_stereo ]] || fail "the command is not completed"
 [[ $(complete_line hpm_mvs patch_match_stereo --workspace_pa) == --workspace_path ]] ||
   fail "an option is not completed"
-[[ $(complete_line hpm_mvs patch_match_stereo --Hpm.method hpm_f) == hpm_fast ]] ||
+[[ $(complete_line hpm_mvs patch_match_stereo --Hpm.method hpm_fast_) == hpm_fast_no_nesp ]] ||
   fail "a choice is not completed"
-[[ $(complete_line hpm_mvs patch_match_stereo --Hpm.method = hpm_f) == hpm_fast ]] ||
+[[ $(complete_line hpm_mvs patch_match_stereo --Hpm.method = hpm_fast_) == hpm_fast_no_nesp ]] ||
   fail "a choice behind = is not completed"
 [[ $(complete_line hpm_mvs patch_match_stereo --Hpm.previews "") == "0 1" ]] ||
   fail "a boolean is not completed"

@@ -17,11 +17,11 @@ fi
 source=$(patches/debian_source.sh "$work/debian") # its own exit code 77
 patches/apply.sh "$source"
 
-configure() { # BUILD_FOLDER FLAGS
-  cmake -S "$source" -B "$1" -G Ninja -DCMAKE_BUILD_TYPE=None -DCMAKE_CXX_FLAGS="$2 -w" \
-    -DHPM_MVS_DIR="$root" -DCUDA_ENABLED=OFF -DGUI_ENABLED=ON -DCGAL_ENABLED=OFF \
-    >"$work/cmake.log" 2>&1 || { tail -n 20 "$work/cmake.log"; return 1; }
-}
+build=$work/build
+cmake -S "$source" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=None -DCMAKE_CXX_FLAGS=-w \
+  -DHPM_MVS_DIR="$root" -DCUDA_ENABLED=OFF -DGUI_ENABLED=ON -DCGAL_ENABLED=OFF \
+  >"$work/cmake.log" 2>&1 || { tail -n 20 "$work/cmake.log"; exit 1; }
+
 library=src/CMakeFiles/colmap.dir
 program=src/exe/CMakeFiles/colmap_exe.dir
 touched=(
@@ -31,15 +31,19 @@ touched=(
   "$program/colmap.cc.o" "$program/mvs.cc.o" "$program/sfm.cc.o"
 )
 
-configure "$work/build" ""
-ninja -C "$work/build" -j2 hpm_in_colmap "${touched[@]}"
-echo "compiled without CUDA: the glue and ${#touched[@]} patched files"
+# By object, as the library of the glue comes with all of COLMAP.
+mapfile -t glue < <(ninja -C "$build" -t targets all | sed -n 's/^\(.*hpm_in_colmap\.dir.*\.o\):.*/\1/p')
+((${#glue[@]} == 2)) || { echo "error: ${#glue[@]} files of the glue, expected 2" >&2; exit 1; }
+objects=("${glue[@]}" "${touched[@]}")
 
-# The same sources as a COLMAP with CUDA compiles them; CUDA itself takes no part in them.
-configure "$work/build_cuda" "-DCUDA_ENABLED -fsyntax-only"
-ninja -C "$work/build_cuda" -t commands hpm_in_colmap "${touched[@]}" |
-  grep -E 'in_colmap/[a-z_]+\.cc|automatic_reconstruction\.cc|dense_reconstruction_widget\.cc|exe/(mvs|sfm|colmap)\.cc' |
-  grep -v hpm_mvs/ >"$work/commands"
-[[ $(wc -l <"$work/commands") -ge 7 ]] || { echo "error: too few commands in $work/commands" >&2; exit 1; }
-(cd "$work/build_cuda" && bash -e "$work/commands")
-echo "compiled as with CUDA: $(wc -l <"$work/commands") files"
+ninja -C "$build" -j2 "${objects[@]}"
+echo "compiled without CUDA: ${#glue[@]} files of the glue and ${#touched[@]} patched files"
+
+# The same sources as a COLMAP with CUDA sees them; CUDA itself takes no part in them.
+sources='(in_colmap/[a-z_]+|automatic_reconstruction|dense_reconstruction_widget|exe/(mvs|sfm|colmap))\.cc'
+ninja -C "$build" -t commands "${objects[@]}" | grep -E -- " -c [^ ]*$sources\$" |
+  sed 's/ -c / -DCUDA_ENABLED -fsyntax-only -c /' >"$work/commands"
+count=$(wc -l <"$work/commands")
+((count == 7)) || { echo "error: $count commands in $work/commands, expected 7" >&2; exit 1; }
+(cd "$build" && bash -e "$work/commands")
+echo "compiled as with CUDA: $count files"

