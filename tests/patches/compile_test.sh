@@ -31,19 +31,21 @@ touched=(
   "$program/colmap.cc.o" "$program/mvs.cc.o" "$program/sfm.cc.o"
 )
 
-# By object, as the library of the glue comes with all of COLMAP.
 mapfile -t glue < <(ninja -C "$build" -t targets all | sed -n 's/^\(.*hpm_in_colmap\.dir.*\.o\):.*/\1/p')
-((${#glue[@]} == 2)) || { echo "error: ${#glue[@]} files of the glue, expected 2" >&2; exit 1; }
-objects=("${glue[@]}" "${touched[@]}")
 
-ninja -C "$build" -j2 "${objects[@]}"
-echo "compiled without CUDA: ${#glue[@]} files of the glue and ${#touched[@]} patched files"
+# The compiler's own commands, as the build would first make all of COLMAP and of our library.
+sources='(in_colmap/[a-z_]+|automatic_reconstruction|option_manager|dense_reconstruction_widget|exe/(mvs|sfm|colmap))\.cc'
+ninja -C "$build" -t commands "${glue[@]}" "${touched[@]}" |
+  grep -E -- " -c [^ ]*$sources\$" | sort -u >"$work/commands"
+count=$(wc -l <"$work/commands")
+((count == 8)) || { echo "error: $count commands in $work/commands, expected 8" >&2; exit 1; }
+compile() { # LABEL COMMANDS
+  (cd "$build" && tr '\n' '\0' <"$2" | xargs -0 -n 1 -P 2 sh -c)
+  echo "compiled $1: 2 files of the glue and 6 that the patch touches"
+}
+(cd "$build" && sed -n 's/.* -o \([^ ]*\) -c .*/\1/p' "$work/commands" | xargs -n 1 dirname | xargs mkdir -p)
+compile "without CUDA" "$work/commands"
 
 # The same sources as a COLMAP with CUDA sees them; CUDA itself takes no part in them.
-sources='(in_colmap/[a-z_]+|automatic_reconstruction|dense_reconstruction_widget|exe/(mvs|sfm|colmap))\.cc'
-ninja -C "$build" -t commands "${objects[@]}" | grep -E -- " -c [^ ]*$sources\$" |
-  sed 's/ -c / -DCUDA_ENABLED -fsyntax-only -c /' >"$work/commands"
-count=$(wc -l <"$work/commands")
-((count == 7)) || { echo "error: $count commands in $work/commands, expected 7" >&2; exit 1; }
-(cd "$build" && bash -e "$work/commands")
-echo "compiled as with CUDA: $count files"
+sed 's/ -c / -DCUDA_ENABLED -fsyntax-only -c /' "$work/commands" >"$work/commands_cuda"
+compile "as with CUDA" "$work/commands_cuda"
