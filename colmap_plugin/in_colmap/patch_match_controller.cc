@@ -11,6 +11,13 @@
 
 #include <fmt/format.h>
 
+// COLMAP's own controller holds one, declared only.
+#if __has_include("colmap/mvs/workspace.h")
+#include "colmap/mvs/workspace.h"
+#else
+#include "mvs/workspace.h"
+#endif
+
 namespace colmap {
 namespace mvs {
 namespace {
