@@ -1,12 +1,22 @@
 # The three kinds of targets of this project; every folder uses only these.
 include_guard()
 
-# hpm_add_library(name SOURCES ... [DEPS ...] [PRIVATE_DEPS ...])
+# hpm_add_library(name SOURCES ... [DEPS ...] [PRIVATE_DEPS ...]): installed, outside of
+# bench/ and tests/, as hpm_mvs::<name without hpm_>.
 function(hpm_add_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPS;PRIVATE_DEPS" ${ARGN})
   add_library(${name} STATIC ${ARG_SOURCES})
-  target_include_directories(${name} PUBLIC ${PROJECT_SOURCE_DIR})
-  target_link_libraries(${name} PUBLIC hpm_compile_options ${ARG_DEPS} PRIVATE ${ARG_PRIVATE_DEPS})
+  target_include_directories(${name} PUBLIC
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:include/hpm_mvs>)
+  target_link_libraries(${name} PUBLIC $<BUILD_INTERFACE:hpm_compile_options> ${ARG_DEPS}
+                        PRIVATE ${ARG_PRIVATE_DEPS})
+  file(RELATIVE_PATH room ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
+  if(NOT room MATCHES "^(bench|tests)")
+    string(REGEX REPLACE "^hpm_" "" export_name ${name})
+    set_target_properties(${name} PROPERTIES EXPORT_NAME ${export_name})
+    install(TARGETS ${name} EXPORT hpm_mvs-targets
+            ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}/hpm_mvs COMPONENT development)
+  endif()
 endfunction()
 
 # hpm_add_executable(name SOURCES ... [DEPS ...])

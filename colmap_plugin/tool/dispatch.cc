@@ -1,12 +1,24 @@
 #include "colmap_plugin/tool/dispatch.h"
 
+#include "colmap_plugin/tool/completion.h"
 #include "colmap_plugin/tool/help.h"
+#include "colmap_plugin/tool/man_page.h"
 #include "colmap_plugin/tool/text.h"
 #include "src/base/error.h"
 
 #include <ostream>
 
 namespace hpm {
+namespace {
+
+std::string HelpAs(const std::string& form) {
+  if (form == "--markdown") return OptionsMarkdown();
+  if (form == "--man") return ManPage();
+  if (form == "--bash") return BashCompletion();
+  return HelpText();
+}
+
+}  // namespace
 
 int RunTool(std::vector<std::string> arguments, const ToolEnvironment& tool) {
   const std::string word = arguments.empty() ? "help" : arguments[0];
@@ -15,8 +27,8 @@ int RunTool(std::vector<std::string> arguments, const ToolEnvironment& tool) {
     return 0;
   }
   if (word == "help") {
-    const bool markdown = arguments.size() == 2 && arguments[1] == "--markdown";
-    *tool.out << (markdown ? OptionsMarkdown() : HelpText()) << std::flush;
+    *tool.out << HelpAs(arguments.size() == 2 ? arguments[1] : "")
+              << std::flush;
     return 0;
   }
   if (word == "patch_match_stereo") {

@@ -33,7 +33,8 @@ ALLOWED = {
     "colmap_plugin/workspace": FORMATS,
     "colmap_plugin/controller": WORKSPACE,
     "colmap_plugin/tool": CONTROLLER,
-    "colmap_plugin/in_colmap": CONTROLLER,
+    "colmap_plugin/in_colmap": CONTROLLER + ("colmap_plugin/tool",),
+    "colmap_plugin/wrapper": (),
     "bench": EVERYTHING,
     "tests": EVERYTHING,
 }

@@ -1,5 +1,7 @@
 #include "colmap_plugin/tool/help.h"
 
+#include "colmap_plugin/tool/completion.h"
+#include "colmap_plugin/tool/man_page.h"
 #include "colmap_plugin/tool/option_table.h"
 
 #include <fstream>
@@ -48,6 +50,16 @@ TEST(HelpTest, OptionsDocumentIsUpToDate) {
   const std::string committed((std::istreambuf_iterator<char>(file)), {});
   EXPECT_EQ(committed, OptionsMarkdown())
       << "write it again: hpm_mvs help --markdown > docs/options.md";
+}
+
+TEST(HelpTest, ManualPageAndCompletionKnowEveryOption) {
+  const std::string page = ManPage();
+  const std::string completion = BashCompletion();
+  for (const OptionSpec& option : OptionTable()) {
+    EXPECT_THAT(page, HasSubstr("\n.BI \\-\\-" + option.name + " \""));
+    EXPECT_THAT(completion, HasSubstr(" --" + option.name));
+    EXPECT_THAT(completion, HasSubstr("\n    --" + option.name + ") "));
+  }
 }
 
 }  // namespace

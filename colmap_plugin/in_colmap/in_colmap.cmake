@@ -1,0 +1,48 @@
+# Included by the top CMakeLists.txt of a patched COLMAP that is configured with
+# -DHPM_MVS_DIR=<this tree>: builds our library as part of COLMAP and joins it to
+# COLMAP's own.
+include_guard()
+
+if(DEFINED MVS_ENABLED AND NOT MVS_ENABLED)
+  message(FATAL_ERROR "HPM_MVS_DIR is given but MVS_ENABLED is off; switch it on")
+endif()
+
+# The library of COLMAP that holds the dense step: one for all in 3.8, of its own later.
+set(hpm_colmap_library colmap)
+if(EXISTS ${PROJECT_SOURCE_DIR}/src/colmap/mvs)
+  set(hpm_colmap_library colmap_mvs)
+endif()
+
+# For all of COLMAP, as not all of it that sees mvs/patch_match.h links that library publicly.
+add_compile_definitions(HPM_MVS_ENABLED)
+include_directories($<BUILD_INTERFACE:${HPM_MVS_DIR}>)
+
+set(HPM_TESTS OFF CACHE INTERNAL "")
+set(HPM_BENCH OFF CACHE INTERNAL "")
+add_subdirectory(${HPM_MVS_DIR} ${CMAKE_BINARY_DIR}/hpm_mvs EXCLUDE_FROM_ALL)
+
+# COLMAP's library and this one need each other; static libraries may. Ours are linked
+# privately, since our compile options are not COLMAP's.
+add_library(hpm_in_colmap STATIC
+  ${HPM_MVS_DIR}/colmap_plugin/in_colmap/patch_match_controller.cc
+  ${HPM_MVS_DIR}/colmap_plugin/in_colmap/subcommand.cc)
+set_target_properties(hpm_in_colmap PROPERTIES
+  CXX_STANDARD 17 CXX_STANDARD_REQUIRED ON POSITION_INDEPENDENT_CODE ON)
+# COLMAP's headers do not keep our stricter warnings.
+target_compile_options(hpm_in_colmap PRIVATE -Wno-shadow -Wno-unused-parameter)
+target_link_libraries(hpm_in_colmap
+  PUBLIC ${hpm_colmap_library}
+  PRIVATE hpm_process)
+
+# By property, as COLMAP's versions call target_link_libraries in two ways that do not
+# mix. Only in this build: COLMAP's installed CMake package does not know us.
+function(hpm_join_colmap)
+  set_property(TARGET ${hpm_colmap_library} APPEND PROPERTY
+    LINK_LIBRARIES $<BUILD_INTERFACE:hpm_in_colmap>)
+  set_property(TARGET ${hpm_colmap_library} APPEND PROPERTY
+    INTERFACE_LINK_LIBRARIES $<BUILD_INTERFACE:hpm_in_colmap>)
+  if(TARGET colmap_mvs_cuda)
+    target_link_libraries(hpm_in_colmap PRIVATE colmap_mvs_cuda)
+  endif()
+endfunction()
+cmake_language(DEFER CALL hpm_join_colmap)

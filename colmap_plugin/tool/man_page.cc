@@ -1,0 +1,118 @@
+#include "colmap_plugin/tool/man_page.h"
+
+#include "colmap_plugin/tool/option_table.h"
+
+#include <fmt/format.h>
+
+namespace hpm {
+namespace {
+
+constexpr char kHead[] =
+    R"(.TH HPM_MVS 1 "" "hpm_mvs )" HPM_VERSION R"(" "User Commands"
+.SH NAME
+hpm_mvs \- dense stereo for a COLMAP workspace
+.SH SYNOPSIS
+.B hpm_mvs patch_match_stereo \-\-workspace_path
+.I DENSE
+.RI [ options ]
+.br
+.B hpm_mvs help
+.RB [ \-\-markdown | \-\-man | \-\-bash ]
+.br
+.B hpm_mvs version
+.SH DESCRIPTION
+Computes the depth and normal maps of a dense workspace, as
+.B colmap image_undistorter
+leaves it, in place of
+.BR "colmap patch_match_stereo" :
+the same options, the same files in, the same files out.
+A run that was stopped goes on where it was when the same command is given again.
+.SH OPTIONS
+Options are written
+.BI \-\-name " value"
+or
+.BI \-\-name= value\fR;
+a unique beginning of a name is enough. Booleans are 0/1, true/false, yes/no, on/off.
+)";
+
+constexpr char kTail[] = R"(.SH EXIT STATUS
+.TP
+.B 0
+Done.
+.TP
+.B 1
+Unforeseen failure.
+.TP
+.B 2
+Wrong option or project file.
+.TP
+.B 3
+A file of the workspace is missing, damaged or contradictory.
+.TP
+.B 4
+Some images failed, the maps of the others are valid.
+.TP
+.B 5
+Out of memory or disk.
+.TP
+.B 6
+The device cannot be used.
+.TP
+.B 7
+Another run works on this workspace.
+.TP
+.B 130, 143
+Interrupted by SIGINT, SIGTERM.
+.SH EXAMPLE
+.nf
+colmap image_undistorter \-\-image_path images \-\-input_path sparse/0 \-\-output_path dense
+hpm_mvs patch_match_stereo \-\-workspace_path dense
+colmap stereo_fusion \-\-workspace_path dense \-\-output_path dense/fused.ply
+.fi
+.SH SEE ALSO
+.BR colmap (1)
+)";
+
+// Text of the table as roff takes it: a backslash and a minus sign are written
+// so that they stay what they are, and no line begins with a control character.
+std::string Roff(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '\\') {
+      out += "\\e";
+    } else if (c == '-') {
+      out += "\\-";
+    } else if ((c == '.' || c == '\'') && out.empty()) {
+      out += std::string("\\&") + c;
+    } else {
+      out += c;
+    }
+  }
+  return out;
+}
+
+std::string Entry(const OptionSpec& option) {
+  std::string meaning = option.help + ".";
+  if (!option.allowed.text.empty()) {
+    meaning += " Allowed: " + option.allowed.text + ".";
+  }
+  if (!option.no_effect.empty()) {
+    meaning += " No effect: " + option.no_effect + ".";
+  }
+  const std::string value = DefaultText(option);
+  return fmt::format(".TP\n.BI {} \" {}\"{}\n{}\n",
+                     Roff("--" + option.name),
+                     TypeText(option),
+                     value.empty() ? "" : " \" \\fR(=" + Roff(value) + ")\"",
+                     Roff(meaning));
+}
+
+}  // namespace
+
+std::string ManPage() {
+  std::string text = kHead;
+  for (const OptionSpec& option : OptionTable()) text += Entry(option);
+  return text + kTail;
+}
+
+}  // namespace hpm

@@ -1,0 +1,65 @@
+#include "colmap_plugin/tool/run_process.h"
+
+#include "colmap_plugin/controller/controller.h"
+#include "colmap_plugin/tool/dispatch.h"
+#include "colmap_plugin/tool/signals.h"
+#include "src/base/error.h"
+
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <iostream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+namespace hpm {
+namespace {
+
+bool IsTerminal() {
+  const char* name = std::getenv("TERM");
+  return isatty(STDOUT_FILENO) && name != nullptr &&
+         std::string_view(name) != "dumb";
+}
+
+int TerminalColumns() {
+  winsize size = {};
+  const bool known =
+      ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  return known ? size.ws_col : 80;
+}
+
+double Seconds() {
+  using std::chrono::steady_clock;
+  return std::chrono::duration<double>(steady_clock::now().time_since_epoch())
+      .count();
+}
+
+RunSummary RunStereo(const ControllerOptions& options,
+                     const LogSink& log,
+                     const ProgressSink& progress,
+                     const CancelToken& cancel) {
+  return PatchMatchController(options, log, progress, cancel).Run();
+}
+
+}  // namespace
+
+int RunProcess(const std::vector<std::string>& arguments) {
+  const CancelToken& cancel = InstallSignalHandlers();
+  ToolEnvironment tool{&std::cout,
+                       &std::cerr,
+                       IsTerminal(),
+                       TerminalColumns(),
+                       Seconds,
+                       &cancel,
+                       RunStereo};
+  const int exit_code = RunTool(arguments, tool);
+  const bool interrupted =
+      exit_code == static_cast<int>(ErrorCode::kInterrupted);
+  return interrupted && CaughtSignal() == SIGTERM ? 128 + SIGTERM : exit_code;
+}
+
+}  // namespace hpm

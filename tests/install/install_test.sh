@@ -1,0 +1,70 @@
+#!/usr/bin/env bash
+# What users get: `cmake --install` into a prefix, find_package(hpm_mvs) from another
+# project, and the Debian package. usage: install_test.sh BUILD_FOLDER FOLDER
+set -euo pipefail
+build=$(realpath "${1:?usage: install_test.sh BUILD_FOLDER FOLDER}")
+work=$(realpath -m "${2:?usage: install_test.sh BUILD_FOLDER FOLDER}")
+cd "$(dirname "$0")"
+rm -rf "$work"
+mkdir -p "$work"
+prefix=$work/prefix
+fail() { echo "FAILED: $*" >&2; exit 1; }
+
+echo "== cmake --install"
+cmake --install "$build" --prefix "$prefix" >"$work/install.log"
+version=$("$prefix/bin/hpm_mvs" version | sed -n 's/^hpm_mvs \([0-9.]*\),.*/\1/p')
+[[ -n $version ]] || fail "the installed program does not run"
+# Found by its place beside the wrapper, not by PATH.
+PATH=/usr/bin:/bin "$prefix/libexec/hpm_mvs/bin/colmap" patch_match_stereo --help | grep -q "hpm_mvs $version" ||
+  fail "the installed wrapper does not find hpm_mvs"
+
+echo "== the manual page"
+page=$prefix/share/man/man1/hpm_mvs.1
+for option in $("$prefix/bin/hpm_mvs" help | sed -n 's/^  --\([^ ]*\) arg.*/\1/p'); do
+  grep -q -- "${option}" "$page" || fail "$option is not in $page"
+done
+if command -v groff >/dev/null; then
+  [[ -z $(groff -man -Tutf8 -ww "$page" 2>&1 >/dev/null) ]] || fail "groff warns of $page"
+fi
+
+echo "== the completion"
+complete_line() { # WORD... : the last one is completed
+  bash -c 'source "$0"; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _hpm_mvs; echo "${COMPREPLY[*]}"' \
+    "$prefix/share/bash-completion/completions/hpm_mvs" "$@"
+}
+[[ $(complete_line hpm_mvs pat) == patch_match_stereo ]] || fail "the command is not completed"
+[[ $(complete_line hpm_mvs patch_match_stereo --workspace_pa) == --workspace_path ]] ||
+  fail "an option is not completed"
+[[ $(complete_line hpm_mvs patch_match_stereo --Hpm.method hpm_fast_) == hpm_fast_no_nesp ]] ||
+  fail "a choice is not completed"
+[[ $(complete_line hpm_mvs patch_match_stereo --Hpm.method = hpm_fast_) == hpm_fast_no_nesp ]] ||
+  fail "a choice behind = is not completed"
+[[ $(complete_line hpm_mvs patch_match_stereo --Hpm.previews "") == "0 1" ]] ||
+  fail "a boolean is not completed"
+
+echo "== find_package(hpm_mvs)"
+mkdir "$work/source"
+cp consumer.cc "$work/source"
+cp consumer.cmake "$work/source/CMakeLists.txt"
+cmake -S "$work/source" -B "$work/consumer" -G Ninja -DCMAKE_PREFIX_PATH="$prefix" \
+  -DCMAKE_BUILD_TYPE=Debug >"$work/consumer.log" 2>&1 || { tail "$work/consumer.log"; fail "configuring the consumer"; }
+cmake --build "$work/consumer" >>"$work/consumer.log" 2>&1 || { tail -n 30 "$work/consumer.log"; fail "building the consumer"; }
+"$work/consumer/consumer" || fail "running the consumer"
+
+echo "== the Debian package"
+command -v dpkg-shlibdeps >/dev/null || { echo "no dpkg-dev here, the package is left out"; exit 0; }
+cpack --config "$build/CPackConfig.cmake" -G DEB -B "$work/deb" >"$work/cpack.log" 2>&1 ||
+  { tail "$work/cpack.log"; fail "cpack"; }
+package=$(echo "$work"/deb/hpm-mvs_*.deb)
+[[ -f $package ]] || fail "no hpm-mvs_*.deb in $work/deb"
+dpkg-deb --field "$package" Depends | grep -q libtbb || fail "the package does not name its libraries"
+dpkg-deb --extract "$package" "$work/root"
+for file in bin/hpm_mvs libexec/hpm_mvs/bin/colmap share/man/man1/hpm_mvs.1 \
+  share/bash-completion/completions/hpm_mvs share/doc/hpm_mvs/copyright; do
+  [[ -f $work/root/usr/$file || -f $work/root/usr/$file.gz ]] || fail "/usr/$file is not in the package"
+done
+[[ ! -e $work/root/usr/include ]] || fail "headers are in the package of the programs"
+"$work/root/usr/bin/hpm_mvs" version | grep -q "$version" || fail "the packaged program does not run"
+apt-get install --simulate -qq "$package" >"$work/apt.log" 2>&1 ||
+  { cat "$work/apt.log"; fail "apt cannot resolve what the package depends on"; }
+echo "ok: $(basename "$package")"

@@ -1,0 +1,127 @@
+"""The newest COLMAP takes our maps: pycolmap reads the workspace, fuses and meshes it."""
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+try:
+    import numpy as np
+    import pycolmap
+except ImportError as error:
+    print(f"skipped: {error}; run scripts/install_pycolmap.sh")
+    sys.exit(77)
+
+from support import HPM_MAKE_SCENE, HPM_MVS
+
+README = pathlib.Path(__file__).resolve().parents[2] / "README.md"
+
+# tests/scenes: the plane through the origin with this normal, toward the cameras.
+NORMAL = np.array([0.3, -0.4, -1.0]) / np.linalg.norm([0.3, -0.4, -1.0])
+# The cameras are 5 units away; a pixel is 0.026 units wide there.
+
+
+def read_ply(path):
+    """Vertices as a structured array, number of faces; binary little-endian only."""
+    data = path.read_bytes()
+    header, body = data.split(b"end_header\n", 1)
+    kinds = {b"float": "<f4", b"uchar": "u1", b"double": "<f8", b"int": "<i4"}
+    fields, count, faces, element = [], 0, 0, None
+    for line in header.split(b"\n"):
+        words = line.split()
+        if words[:1] == [b"element"]:
+            element = words[1]
+            if element == b"vertex":
+                count = int(words[2])
+            else:
+                faces = int(words[2])
+        elif words[:1] == [b"property"] and element == b"vertex":
+            fields.append((words[2].decode(), kinds[words[1]]))
+    return np.frombuffer(body, dtype=fields, count=count), faces
+
+
+def positions(vertices):
+    return np.stack([vertices[axis] for axis in "xyz"], axis=1).astype(np.float64)
+
+
+class PycolmapTest(unittest.TestCase):
+    """All tests read one workspace, made by the recipe of the README."""
+
+    @classmethod
+    def setUpClass(cls):
+        print(f"pycolmap {pycolmap.__version__}", file=sys.stderr)
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.folder.cleanup)
+        cls.dense = pathlib.Path(cls.folder.name) / "dense"
+        size = ["--views", "6", "--width", "160", "--height", "120"]
+        subprocess.run([HPM_MAKE_SCENE, "tilted_plane", cls.dense, *size], check=True)
+        # As it stands in the README, with hpm_mvs on PATH.
+        cls.recipe = README.read_text().split("```python\n", 1)[1].split("```", 1)[0]
+        environment = dict(os.environ)
+        environment["PATH"] = f"{pathlib.Path(HPM_MVS).parent}:{environment['PATH']}"
+        cls.result = subprocess.run(
+            [sys.executable, "-c", cls.recipe], cwd=cls.folder.name, env=environment,
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=400,
+        )
+
+    def setUp(self):
+        self.assertEqual(self.result.returncode, 0, self.result.stdout)
+
+    def test_the_recipe_of_the_readme_has_three_lines(self):
+        self.assertEqual(len([l for l in self.recipe.splitlines() if l.strip()]), 3)
+
+    def test_reads_our_maps_as_we_wrote_them(self):
+        if not hasattr(pycolmap, "DepthMap"):
+            self.skipTest(f"pycolmap {pycolmap.__version__} has no reader of maps")
+        name = "view00.png.geometric.bin"
+        depth_map, normal_map = pycolmap.DepthMap(), pycolmap.NormalMap()
+        depth_map.read(self.dense / "stereo/depth_maps" / name)
+        normal_map.read(self.dense / "stereo/normal_maps" / name)
+        depth = np.asarray(depth_map.to_array())
+        self.assertEqual(depth.shape[:2], (120, 160))
+        valid = depth.reshape(120, 160) > 0
+        # to_array() says (H, W, 3), but copies COLMAP's three planes as they lie in memory.
+        planes = np.asarray(normal_map.to_array()).reshape(3, 120, 160)
+        normal = np.moveaxis(planes, 0, -1)
+        self.assertGreater(valid.mean(), 0.5)
+        np.testing.assert_allclose(np.linalg.norm(normal[valid], axis=-1), 1, atol=1e-4)
+        self.assertTrue((normal[~valid] == 0).all())
+
+    def test_reads_the_model_beside_them(self):
+        model = pycolmap.Reconstruction(self.dense / "sparse")
+        self.assertEqual(model.num_reg_images(), 6)
+
+    def test_fusion_gives_the_plane(self):
+        vertices, _ = read_ply(self.dense / "fused.ply")
+        self.assertGreater(len(vertices), 3000)
+        distance = np.abs(positions(vertices) @ NORMAL)
+        self.assertLess(np.median(distance), 0.01)
+        self.assertLess(np.quantile(distance, 0.95), 0.05)
+        normals = np.stack([vertices[axis] for axis in ("nx", "ny", "nz")], axis=1)
+        slopes = normals @ NORMAL
+        self.assertGreater(slopes.min(), 0, "a normal points away from the cameras")
+        self.assertGreater(np.median(slopes), 0.98)
+
+    def test_poisson_meshing_gives_the_plane(self):
+        options = pycolmap.PoissonMeshingOptions()
+        options.depth, options.trim, options.num_threads = 7, 3, 1
+        mesh = self.dense / "meshed-poisson.ply"
+        pycolmap.poisson_meshing(self.dense / "fused.ply", mesh, options)
+        vertices, faces = read_ply(mesh)
+        self.assertGreater(faces, 1000)
+        self.assertLess(np.median(np.abs(positions(vertices) @ NORMAL)), 0.02)
+
+    def test_delaunay_meshing_gives_the_plane(self):
+        meshing = getattr(pycolmap, "dense_delaunay_meshing", None)
+        if meshing is None:
+            self.skipTest(f"the wheel of pycolmap {pycolmap.__version__} has no Delaunay meshing")
+        mesh = self.dense / "meshed-delaunay.ply"
+        meshing(self.dense, mesh)
+        vertices, faces = read_ply(mesh)
+        self.assertGreater(faces, 100)
+        self.assertLess(np.median(np.abs(positions(vertices) @ NORMAL)), 0.02)
+
+
+if __name__ == "__main__":
+    unittest.main()
