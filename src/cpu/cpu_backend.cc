@@ -4,6 +4,7 @@
 #include "src/core/median_filter.h"
 #include "src/core/update_pixel.h"
 #include "src/cpu/cpu_views.h"
+#include "src/engine/visit_params.h"
 
 #include <atomic>
 #include <optional>
@@ -41,23 +42,7 @@ class CpuBackend : public Backend {
     views_.emplace(views, params);
     num_evaluations_ = 0;
     random_key_ = views.random_key;
-    visit_ = {};
-    visit_.ref = views.ref.camera;
-    visit_.num_views = static_cast<int>(views.srcs.size());
-    visit_.depth_min = views.depth_min;
-    visit_.depth_max = views.depth_max;
-    visit_.num_view_draws = params.num_view_draws;
-    visit_.depth_perturbation = params.depth_perturbation;
-    visit_.normal_perturbation = params.normal_perturbation;
-    visit_.same_plane_bound = params.same_plane_bound;
-    visit_.parallax = views_->parallax();
-    visit_.patch_radius = params.patch_radius;
-    visit_.geometric_term = {params.geom_weight, params.geom_max_error};
-    visit_.prior_term = {
-        params.prior_gamma,
-        params.prior_beta,
-        params.prior_depth_share * (views.depth_max - views.depth_min),
-        params.prior_angle};
+    visit_ = MakeVisitParams(views, params);
   }
 
   void Run(const Pass& pass,

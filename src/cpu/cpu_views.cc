@@ -53,10 +53,6 @@ CpuViews::CpuViews(const ViewSet& views, const MethodParams& params)
     to_ref_.push_back(MakeViewWarp(src.camera, views.ref.camera));
     inverse_depths_.push_back(src.inverse_depth);
     src_centers_.push_back(CamFromWorld(views.ref.camera, Center(src.camera)));
-    const Vec3f baseline =
-        src.camera.R * (Center(views.ref.camera) - Center(src.camera));
-    parallax_ = std::max(
-        parallax_, std::max(src.camera.fx, src.camera.fy) * Norm(baseline));
     const ViewWarp& warp = to_src_.back();
     for (int i = 0; i < 9; ++i) match_.M[i][j] = warp.M.m[i];
     match_.v[0][j] = warp.v.x;

@@ -21,10 +21,6 @@ class CpuViews {
   // Camera centre of a source view in the reference camera frame.
   const std::vector<Vec3f>& src_centers() const { return src_centers_; }
 
-  // Pixels that a source position moves per unit of -1/z of the plane, about:
-  // the largest focal length times baseline.
-  float parallax() const { return parallax_; }
-
   bool HasDepth(int view) const { return inverse_depths_[view] != nullptr; }
 
   RefPatch PatchAt(int col, int row) const;
@@ -47,7 +43,6 @@ class CpuViews {
   std::vector<ViewWarp> to_src_, to_ref_;
   std::vector<std::shared_ptr<const std::vector<float>>> inverse_depths_;
   std::vector<Vec3f> src_centers_;
-  float parallax_ = 0;
 };
 
 class CpuPixelCost {

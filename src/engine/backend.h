@@ -17,6 +17,9 @@ namespace hpm {
 struct RunControl {
   const CancelToken* cancel;
   std::function<void(double)> progress;  // share of the pass that is done, 0..1
+  // The map is as this backend's last Run left it, but for its priors; a
+  // backend that holds a copy need not fetch it again.
+  bool continues = false;
 };
 
 class Backend {

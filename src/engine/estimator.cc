@@ -60,6 +60,7 @@ void RunStage(Backend* backend,
   for (size_t i = 0; i < stage.passes.size(); ++i) {
     const Pass& pass = stage.passes[i];
     RunControl pass_control = control;
+    pass_control.continues = i > 0 && !stage.from_coarser;
     pass_control.progress = [&](double fraction) {
       if (control.progress) {
         control.progress((static_cast<double>(i) + fraction) / num_passes);

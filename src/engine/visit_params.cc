@@ -1,0 +1,44 @@
+#include "src/engine/visit_params.h"
+
+#include <algorithm>
+
+namespace hpm {
+namespace {
+
+// Pixels that a source position moves per unit of -1/z of the plane, about: the
+// largest focal length times baseline.
+float Parallax(const ViewSet& views) {
+  float parallax = 0;
+  for (const View& src : views.srcs) {
+    const Vec3f baseline =
+        src.camera.R * (Center(views.ref.camera) - Center(src.camera));
+    parallax = std::max(
+        parallax, std::max(src.camera.fx, src.camera.fy) * Norm(baseline));
+  }
+  return parallax;
+}
+
+}  // namespace
+
+VisitParams MakeVisitParams(const ViewSet& views, const MethodParams& params) {
+  VisitParams visit = {};
+  visit.ref = views.ref.camera;
+  visit.num_views = static_cast<int>(views.srcs.size());
+  visit.depth_min = views.depth_min;
+  visit.depth_max = views.depth_max;
+  visit.num_view_draws = params.num_view_draws;
+  visit.depth_perturbation = params.depth_perturbation;
+  visit.normal_perturbation = params.normal_perturbation;
+  visit.same_plane_bound = params.same_plane_bound;
+  visit.parallax = Parallax(views);
+  visit.patch_radius = params.patch_radius;
+  visit.geometric_term = {params.geom_weight, params.geom_max_error};
+  visit.prior_term = {
+      params.prior_gamma,
+      params.prior_beta,
+      params.prior_depth_share * (views.depth_max - views.depth_min),
+      params.prior_angle};
+  return visit;
+}
+
+}  // namespace hpm
