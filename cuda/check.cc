@@ -1,6 +1,6 @@
 #include "cuda/check.h"
 
-#include "src/base/error.h"
+#include "cuda/gpu_error.h"
 
 #include <string>
 
@@ -10,15 +10,15 @@ void CheckCuda(cudaError_t status, const char* doing) {
   if (status == cudaSuccess) return;
   cudaGetLastError();  // forget it where it does not stick
   if (status == cudaErrorMemoryAllocation) {
-    throw Error(ErrorCode::kOutOfResources,
-                std::string("GPU: out of memory while ") + doing +
-                    "; set a smaller --PatchMatchStereo.max_image_size, "
-                    "--Hpm.gpu_images 1 or --Hpm.device cpu");
+    throw GpuError(ErrorCode::kOutOfResources,
+                   std::string("GPU: out of memory while ") + doing +
+                       "; set a smaller --PatchMatchStereo.max_image_size, "
+                       "--Hpm.gpu_images 1 or --Hpm.device cpu");
   }
-  throw Error(ErrorCode::kDevice,
-              std::string("GPU: ") + cudaGetErrorString(status) + " (" +
-                  cudaGetErrorName(status) + ") while " + doing +
-                  "; set --Hpm.device cpu to compute on the CPU");
+  throw GpuError(ErrorCode::kDevice,
+                 std::string("GPU: ") + cudaGetErrorString(status) + " (" +
+                     cudaGetErrorName(status) + ") while " + doing +
+                     "; set --Hpm.device cpu to compute on the CPU");
 }
 
 }  // namespace hpm

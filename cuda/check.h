@@ -5,8 +5,8 @@
 
 namespace hpm {
 
-// Throws Error(kOutOfResources) when the card's memory is exhausted, else
-// Error(kDevice), naming what was being done.
+// Throws GpuError(kOutOfResources) when the card's memory is exhausted, else
+// GpuError(kDevice), naming what was being done.
 void CheckCuda(cudaError_t status, const char* doing);
 
 }  // namespace hpm

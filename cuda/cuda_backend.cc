@@ -15,8 +15,6 @@
 #include <optional>
 #include <utility>
 
-#include <fmt/format.h>
-
 namespace hpm {
 namespace {
 
@@ -128,13 +126,15 @@ class CudaBackendImpl : public CudaBackend {
   }
 
   std::string Name() const override {
-    return fmt::format("cuda {}: {}", options_.device, name_);
+    return "cuda " + std::to_string(options_.device) + ": " + name_;
   }
 
   uint64_t MemoryNeeded(int width, int height, int) const override {
     return static_cast<uint64_t>(width) * height *
            (2 * sizeof(Plane) + 2 * sizeof(uint32_t));
   }
+
+  bool UpsamplesPriors() const override { return true; }
 
   void SetViews(const ViewSet& views, const MethodParams& params) override {
     UseDevice();
@@ -265,8 +265,16 @@ class CudaBackendImpl : public CudaBackend {
                         costs_.data(),
                         masks_.data(),
                         nullptr};
-    if (!map.priors.empty()) {
-      priors_.Upload(map.priors.data(), size, stream());
+    if (!map.priors.empty() && map.prior_level == 0) {
+      priors_.Upload(map.priors, stream());
+      state.priors = priors_.data();
+    } else if (!map.priors.empty()) {
+      low_priors_.Upload(map.priors, stream());
+      LaunchUpsample(tables_.problem,
+                     low_priors_.data(),
+                     map.prior_level,
+                     priors_.Reserve(size),
+                     stream());
       state.priors = priors_.data();
     }
     const unsigned long long zero = 0;
@@ -354,7 +362,7 @@ class CudaBackendImpl : public CudaBackend {
   DeviceBuffer<ViewWarp> to_src_, to_ref_;
   DeviceBuffer<Vec3f> src_centers_;
   DeviceBuffer<const float*> depths_;
-  DeviceBuffer<Plane> planes_, priors_;
+  DeviceBuffer<Plane> planes_, priors_, low_priors_;
   DeviceBuffer<float> costs_;
   DeviceBuffer<uint32_t> masks_, consistent_;
   DeviceBuffer<unsigned long long> counter_;

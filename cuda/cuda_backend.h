@@ -35,8 +35,8 @@ class CudaBackend : public Backend {
   virtual double longest_launch() const = 0;
 };
 
-// Throws Error(kDevice) if the device cannot be used, Error(kOutOfResources) if
-// it has no memory left; so do all methods.
+// Throws GpuError(kDevice) if the device cannot be used,
+// GpuError(kOutOfResources) if it has no memory left; so do all methods.
 std::unique_ptr<CudaBackend> MakeCudaBackend(const CudaOptions& options);
 
 }  // namespace hpm

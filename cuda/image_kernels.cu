@@ -22,6 +22,20 @@ __global__ void MedianKernel(const Camera camera,
   MedianFilterPixel(camera, state, pixel.col, pixel.row);
 }
 
+__global__ void Upsample(const __grid_constant__ DeviceProblem problem,
+                         const Plane* low,
+                         int level,
+                         Plane* planes) {
+  const int width = problem.params.ref.width;
+  const size_t at = static_cast<size_t>(blockIdx.x) * blockDim.x + threadIdx.x;
+  if (at >= static_cast<size_t>(width) * problem.params.ref.height) return;
+  planes[at] = UpsampledPriorAt(problem,
+                                low,
+                                level,
+                                static_cast<int>(at % width),
+                                static_cast<int>(at / width));
+}
+
 __global__ void PackTexels(const uint8_t* grey,
                            int width,
                            int height,
@@ -67,6 +81,19 @@ void LaunchMedian(const SweepLaunch& launch, cudaStream_t stream) {
                  stream>>>(
       launch.problem->params.ref, launch.state, launch.band);
   CheckCuda(cudaGetLastError(), "starting the median");
+}
+
+void LaunchUpsample(const DeviceProblem& problem,
+                    const Plane* low,
+                    int level,
+                    Plane* planes,
+                    cudaStream_t stream) {
+  const Camera& ref = problem.params.ref;
+  Upsample<<<Blocks(static_cast<size_t>(ref.width) * ref.height),
+             kBlock,
+             0,
+             stream>>>(problem, low, level, planes);
+  CheckCuda(cudaGetLastError(), "upsampling a prior");
 }
 
 void LaunchPackTexels(const uint8_t* grey,

@@ -1,5 +1,5 @@
 // Starting kernels; the arguments are plain, the memory is the card's. All
-// return at once and throw Error(kDevice) if the launch is refused.
+// return at once and throw GpuError(kDevice) if the launch is refused.
 #pragma once
 
 #include "cuda/pixel_kernels.h"
@@ -31,6 +31,14 @@ void LaunchTextureCosts(const SweepLaunch& launch,
 void LaunchQuadCosts(const SweepLaunch& launch,
                      float* costs,
                      cudaStream_t stream);
+
+// planes[pixel of ref] from those of a coarser level; see
+// src/core/upsample_plane.h.
+void LaunchUpsample(const DeviceProblem& problem,
+                    const Plane* low,
+                    int level,
+                    Plane* planes,
+                    cudaStream_t stream);
 
 // See texel_image.h.
 void LaunchPackTexels(const uint8_t* grey,

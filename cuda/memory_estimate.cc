@@ -13,6 +13,11 @@ constexpr double kUsableShare = 0.9;
 // Tables, events, and what alignment of arrays and textures costs.
 constexpr uint64_t kOverheadBytes = 48ull << 20;
 
+// The driver keeps a stack for every thread that can be resident. Bytes as
+// ptxas tells for the update kernels (docs/benchmarks.md), rounded up.
+constexpr uint64_t kStackBytes = 3328;
+constexpr uint64_t kThreadsPerProcessor = 2048;
+
 // Textures are stored in blocks; their rows and columns are rounded up.
 constexpr uint64_t kTextureGrain = 128;
 
@@ -52,13 +57,21 @@ uint64_t DeviceBytesNeeded(const ProblemSize& size, ImageFormat format) {
          staging;
 }
 
+uint64_t DeviceOverheadBytes(int num_processors) {
+  return num_processors * kThreadsPerProcessor * kStackBytes;
+}
+
 int ImagesThatFit(const ProblemSize& size,
                   ImageFormat format,
                   uint64_t free_bytes,
+                  int num_processors,
                   int most) {
   const auto usable =
       static_cast<uint64_t>(kUsableShare * static_cast<double>(free_bytes));
-  const uint64_t fit = usable / DeviceBytesNeeded(size, format);
+  const uint64_t overhead = DeviceOverheadBytes(num_processors);
+  const uint64_t fit =
+      usable > overhead ? (usable - overhead) / DeviceBytesNeeded(size, format)
+                        : 0;
   return static_cast<int>(std::min<uint64_t>(fit, std::max(most, 0)));
 }
 

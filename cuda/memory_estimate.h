@@ -17,10 +17,14 @@ struct ProblemSize {
 // Upper estimate in bytes.
 uint64_t DeviceBytesNeeded(const ProblemSize& size, ImageFormat format);
 
-// Images in flight that fit into `free_bytes`, 0..most.
+// Once per card, for the stacks of the threads its processors can hold.
+uint64_t DeviceOverheadBytes(int num_processors);
+
+// Images in flight that fit into `free_bytes` beside the overhead, 0..most.
 int ImagesThatFit(const ProblemSize& size,
                   ImageFormat format,
                   uint64_t free_bytes,
+                  int num_processors,
                   int most);
 
 }  // namespace hpm

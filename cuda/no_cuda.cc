@@ -1,7 +1,7 @@
 // In place of the CUDA backend in a build without nvcc.
 #include "cuda/cuda_backend.h"
 #include "cuda/cuda_devices.h"
-#include "src/base/error.h"
+#include "cuda/gpu_error.h"
 
 namespace hpm {
 namespace {
@@ -17,7 +17,7 @@ std::vector<CudaDevice> FindCudaDevices(std::string* why_none) {
 }
 
 std::unique_ptr<CudaBackend> MakeCudaBackend(const CudaOptions&) {
-  throw Error(ErrorCode::kDevice, kReason);
+  throw GpuError(ErrorCode::kDevice, kReason);
 }
 
 }  // namespace hpm

@@ -8,6 +8,7 @@
 #include "src/core/initialize_pixel.h"
 #include "src/core/median_filter.h"
 #include "src/core/update_pixel.h"
+#include "src/core/upsample_plane.h"
 
 namespace hpm {
 
@@ -59,6 +60,27 @@ HPM_HD void VisitPixel(const DeviceProblem& problem,
                   row);
     }
   }
+}
+
+// A prior of a coarser level at one pixel; the reference image guides.
+HPM_HD Plane UpsampledPriorAt(const DeviceProblem& problem,
+                              const Plane* low,
+                              int level,
+                              int col,
+                              int row) {
+  const int width = problem.params.ref.width;
+  return UpsamplePlaneAt(
+      low,
+      level,
+      problem.params.ref,
+      [&](int c, int r) {
+        return problem.ref_grey[static_cast<size_t>(r) * width + c];
+      },
+      [](int d) { return UpsampleColorWeight(d); },
+      problem.params.depth_min,
+      problem.params.depth_max,
+      col,
+      row);
 }
 
 }  // namespace hpm

@@ -3,8 +3,7 @@
 #include "src/core/sampling_pattern.h"
 
 #include <cmath>
-
-#include <fmt/format.h>
+#include <string>
 
 namespace hpm {
 namespace {
@@ -18,7 +17,10 @@ constexpr int kNumSrcs = 4;
 constexpr float kDepth = 5;
 constexpr float kSlope = 0.25f;
 
-// Share of pixels that must be within 1 % of the truth, and their cost.
+// Pixels so close to the border are not judged: some sources do not see them.
+constexpr int kMargin = 10;
+
+// Share of the others that must be within 1 % of the truth.
 constexpr double kMinGoodShare = 0.9;
 
 Camera CameraAt(float x, float y) {
@@ -93,24 +95,26 @@ std::string SelfTestFailure(Backend* backend) {
   } catch (const Error& error) {
     return error.what();
   }
-  int num_good = 0;
-  for (int row = 0; row < kHeight; ++row) {
-    for (int col = 0; col < kWidth; ++col) {
+  int num_good = 0, num_judged = 0;
+  for (int row = kMargin; row < kHeight - kMargin; ++row) {
+    for (int col = kMargin; col < kWidth - kMargin; ++col) {
       const size_t at = static_cast<size_t>(row) * kWidth + col;
       const float truth = TrueDepth(views.ref.camera, {0, 0, 0}, col, row);
       const float depth = DepthAt(views.ref.camera,
                                   map.planes[at],
                                   static_cast<float>(col),
                                   static_cast<float>(row));
+      ++num_judged;
       num_good += std::abs(depth - truth) <= 0.01f * truth;
     }
   }
-  const double share = num_good / static_cast<double>(map.planes.size());
+  const double share = num_good / static_cast<double>(num_judged);
   if (share >= kMinGoodShare) return "";
-  return fmt::format(
-      "the self-test found {:.0f} % of a plane, {:.0f} % are needed",
-      100 * share,
-      100 * kMinGoodShare);
+  const auto percent = [](double part) {
+    return std::to_string(static_cast<int>(100 * part)) + " %";
+  };
+  return "the self-test found " + percent(share) + " of a plane, " +
+         percent(kMinGoodShare) + " are needed";
 }
 
 }  // namespace hpm

@@ -36,6 +36,10 @@ class Backend {
   // Takes the images and cameras of a problem; replaces the problem before.
   virtual void SetViews(const ViewSet& views, const MethodParams& params) = 0;
 
+  // Whether Run takes priors of a coarser level (HypothesisMap::prior_level)
+  // and upsamples them itself.
+  virtual bool UpsamplesPriors() const { return false; }
+
   // Runs one pass in place. Throws Error(kInterrupted) when cancelled.
   virtual void Run(const Pass& pass,
                    const SamplingPattern& pattern,

@@ -68,11 +68,15 @@ void RunStage(Backend* backend,
     };
     if (pass.kind == PassKind::kPrior) {
       PhaseTimer timer(times, "build prior");
-      map->priors = BuildPrior(*map,
-                               views.ref.camera,
-                               *views.ref.image,
-                               pass.level,
-                               {views.depth_min, views.depth_max});
+      const PriorRange range = {views.depth_min, views.depth_max};
+      if (backend->UpsamplesPriors()) {
+        map->priors =
+            BuildLevelPrior(*map, views.ref.camera, pass.level, range);
+        map->prior_level = pass.level;
+      } else {
+        map->priors = BuildPrior(
+            *map, views.ref.camera, *views.ref.image, pass.level, range);
+      }
     }
     {
       PhaseTimer timer(times, PhaseName(pass.kind));
@@ -82,6 +86,7 @@ void RunStage(Backend* backend,
       KeepUnlessClearlyBetter(carried, map);
     }
     map->priors = {};
+    map->prior_level = 0;
   }
 }
 

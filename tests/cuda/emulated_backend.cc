@@ -192,9 +192,20 @@ void EmulatedBackend::Run(const Pass& pass,
                           HypothesisMap* map,
                           const RunControl& control) {
   tables_.problem.pattern = pattern;
+  PixelState state = map->View();
+  std::vector<Plane> priors;
+  if (map->prior_level > 0) {
+    for (int row = 0; row < map->height; ++row) {
+      for (int col = 0; col < map->width; ++col) {
+        priors.push_back(UpsampledPriorAt(
+            tables_.problem, map->priors.data(), map->prior_level, col, row));
+      }
+    }
+    state.priors = priors.data();
+  }
   for (const Sweep& sweep : SweepsOf(pass, views_.random_key)) {
     control.cancel->ThrowIfCancelled();
-    RunSweep(sweep, map->View(), nullptr);
+    RunSweep(sweep, state, nullptr);
   }
 }
 

@@ -31,6 +31,7 @@ class EmulatedBackend : public Backend {
 
   std::string Name() const override { return "emulated"; }
   uint64_t MemoryNeeded(int, int, int) const override { return 0; }
+  bool UpsamplesPriors() const override { return true; }
   void SetViews(const ViewSet& views, const MethodParams& params) override;
   void Run(const Pass& pass,
            const SamplingPattern& pattern,

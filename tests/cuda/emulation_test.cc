@@ -2,6 +2,7 @@
 // a card adds to this is its own rounding and its hardware.
 #include "src/core/sampling_pattern.h"
 #include "src/cpu/cpu_backend.h"
+#include "src/engine/estimator.h"
 #include "tests/cpu/scene_views.h"
 #include "tests/cuda/emulated_backend.h"
 
@@ -155,6 +156,36 @@ TEST_F(EmulationTest, GivesTheBytesOfTheCpuBackendWithTheLocalPattern) {
   const auto cpu = MakeCpuBackend("scalar", 2);
   ExpectSameBytes(RunAll(&emulated, views_, local),
                   RunAll(cpu.get(), views_, local));
+}
+
+// A whole method through the engine, priors of two levels upsampled by the
+// backend.
+TEST_F(EmulationTest, AMethodWithPriorsGivesTheBytesOfTheCpuBackend) {
+  const ViewSet views = MakeViews("low_texture_wall", 75, 58);
+  ScheduleOptions options;
+  options.num_levels = 3;
+  options.num_iterations = 2;
+  options.num_geom_passes = 1;
+  const Schedule schedule = MakeSchedule(options);
+  EmulatedBackend emulated({EmulatedCost::kCore, 3, 16});
+  const auto cpu = MakeCpuBackend("scalar", 2);
+  std::vector<HypothesisMap> maps;
+  for (Backend* backend : {static_cast<Backend*>(&emulated), cpu.get()}) {
+    HypothesisMap map(75, 58);
+    PhaseTimes times;
+    for (const StageSpec& stage : schedule.stages) {
+      RunStage(backend,
+               views,
+               schedule,
+               stage,
+               MethodParams(),
+               control_,
+               &map,
+               &times);
+    }
+    maps.push_back(std::move(map));
+  }
+  EXPECT_TRUE(SameMaps(maps[0], maps[1]));
 }
 
 // The warp that computes together gives what its lanes compute alone.

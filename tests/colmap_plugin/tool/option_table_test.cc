@@ -122,6 +122,8 @@ TEST(OptionTableTest, EveryMemberOfHpmOptionsIsAnOption) {
   // A new member breaks this line: give it a row in the table, then a name
   // here.
   const auto& [method,
+               device,
+               gpu_images,
                cpu_target,
                num_iterations,
                num_geom_iterations,
@@ -131,12 +133,14 @@ TEST(OptionTableTest, EveryMemberOfHpmOptionsIsAnOption) {
                num_levels,
                previews,
                overwrite] = HpmOptions();
-  (void)method, (void)cpu_target, (void)num_iterations,
-      (void)num_geom_iterations;
+  (void)method, (void)device, (void)gpu_images, (void)cpu_target,
+      (void)num_iterations, (void)num_geom_iterations;
   (void)num_geom_passes, (void)geom_weight, (void)geom_max_error,
       (void)num_levels;
   (void)previews, (void)overwrite;
   for (const char* name : {"method",
+                           "device",
+                           "gpu_images",
                            "cpu_target",
                            "num_iterations",
                            "num_geom_iterations",
@@ -237,6 +241,8 @@ const std::vector<Values>& ValueTable() {
        {HpmOptions().method, "acmh"},
        {"", "ACMH", "zzz"},
        "acmh, "},
+      {"Hpm.device", {"auto", "cpu", "cuda"}, {"", "gpu", "CPU"}, "auto, cpu"},
+      {"Hpm.gpu_images", {"-1", "0", "4"}, {"-2", "1.5"}, ">= -1"},
       {"Hpm.cpu_target", {"auto"}, {}, ""},
       {"Hpm.num_iterations", {"1", "3"}, {"0", "-1", "2.5"}, ">= 1"},
       {"Hpm.num_geom_iterations", {"1", "2"}, {"0"}, ">= 1"},
