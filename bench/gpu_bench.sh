@@ -51,6 +51,8 @@ compile() {
     "$nvcc" -std=c++17 -O3 -DNDEBUG -lineinfo -Xptxas -v -gencode "arch=compute_$capability,code=sm_$capability" \
       "${include[@]}" -I. -c "$source" -o "$object" >"$object.log" 2>&1
   else
+    # CGAL's exact predicates change the rounding mode.
+    [[ $source == *_cgal.cc ]] && include+=(-frounding-math)
     g++ "${cxx_flags[@]}" "${include[@]}" -c "$source" -o "$object" >"$object.log" 2>&1
   fi || { echo "error: $source" >&2; cat "$object.log" >&2; rm -f "$object"; return 1; }
 }
@@ -59,8 +61,8 @@ link() {
   local program=$1 source files=()
   shift
   for source in "$@"; do files+=("$(object_of "$source")"); done
-  "$nvcc" -cudart static -o "$objects/$program" "${files[@]}" "${extra[@]}" \
-    $(printf -- '-Xlinker %s ' "${libs[@]/#-Wl,-rpath,/-rpath=}") -lpthread
+  g++ -o "$objects/$program" "${files[@]}" "${extra[@]}" "${libs[@]}" \
+    -L"$cuda/lib64" -L"$cuda/targets/x86_64-linux/lib" -lcudart_static -lpthread -ldl -lrt
 }
 
 step_build() {
