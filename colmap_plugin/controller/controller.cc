@@ -1,9 +1,11 @@
 #include "colmap_plugin/controller/controller.h"
 
+#include "colmap_plugin/controller/devices.h"
 #include "colmap_plugin/controller/method_options.h"
 #include "colmap_plugin/controller/run_budget.h"
 #include "colmap_plugin/controller/run_statistics.h"
 #include "colmap_plugin/controller/stage_runner.h"
+#include "colmap_plugin/controller/worker_pool.h"
 #include "colmap_plugin/formats/atomic_file.h"
 #include "colmap_plugin/workspace/output_check.h"
 #include "colmap_plugin/workspace/run_lock.h"
@@ -15,6 +17,7 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <utility>
 
@@ -85,7 +88,7 @@ RunSummary PatchMatchController::Run() {
     thread_limit.emplace(tbb::global_control::max_allowed_parallelism,
                          static_cast<size_t>(options_.patch_match.num_threads));
   }
-  const std::unique_ptr<Backend> backend =
+  std::unique_ptr<Backend> cpu =
       MakeCpuBackend(options_.hpm.cpu_target, options_.patch_match.num_threads);
 
   log_(LogLevel::kInfo, "Reading workspace...");
@@ -111,8 +114,21 @@ RunSummary PatchMatchController::Run() {
          "anew");
   }
 
-  const MemoryNeeds needs = LargestNeeds(
-      workspace, problems, *backend, options_.patch_match.geom_consistency);
+  const bool geometric = options_.patch_match.geom_consistency;
+  std::vector<std::unique_ptr<Backend>> gpus =
+      OpenGpus(options_,
+               LargestProblem(workspace, problems, geometric),
+               static_cast<int>(problems.size()),
+               RealGpus(),
+               log_);
+  const Backend& first = gpus.empty() ? *cpu : *gpus.front();
+  MemoryNeeds needs = LargestNeeds(workspace, problems, first, geometric);
+  if (gpus.size() > 1) {
+    gpus.resize(
+        ImagesInMemory(needs, static_cast<int>(gpus.size()), MemoryLimit()));
+    needs.working *= gpus.size();
+  }
+  const std::string backend_name = first.Name();
   InputCache inputs(workspace,
                     PlanCacheBytes(CacheBytes(options_.patch_match.cache_size),
                                    needs.working,
@@ -120,21 +136,31 @@ RunSummary PatchMatchController::Run() {
                                    MemoryLimit()),
                     log_);
   log_(LogLevel::kInfo,
-       fmt::format("{}, method {}, about {} MB of memory",
-                   backend->Name(),
+       fmt::format("{}{}, method {}, about {} MB of memory",
+                   backend_name,
+                   gpus.size() > 1
+                       ? fmt::format(", {} images in flight", gpus.size())
+                       : "",
                    options_.hpm.method,
                    (needs.working + needs.inputs) >> 20));
 
-  StageRunner runner(workspace,
-                     problems,
-                     schedule,
-                     options_,
-                     plan,
-                     &inputs,
-                     backend.get(),
-                     log_);
+  WorkerPool workers(
+      std::move(cpu),
+      std::move(gpus),
+      [&](Backend* backend) {
+        return std::make_unique<StageRunner>(workspace,
+                                             problems,
+                                             schedule,
+                                             options_,
+                                             plan,
+                                             &inputs,
+                                             backend,
+                                             log_);
+      },
+      options_.hpm.device != "cuda",
+      log_);
   RunStatistics statistics;
-  RunStages(workspace, problems, plan, &inputs, &runner, &statistics);
+  RunStages(workspace, problems, plan, &inputs, &workers, &statistics);
   if (!statistics.AnyFailed()) RemoveInnerMaps(workspace, plan);
 
   if (!options_.patch_match.allow_missing_files) {
@@ -148,7 +174,7 @@ RunSummary PatchMatchController::Run() {
   }
   const RunSummary summary = statistics.Summarize(
       names,
-      backend->Name(),
+      backend_name,
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start)
           .count());
   if (statistics.AnyComputed() || statistics.AnyFailed()) {
@@ -161,7 +187,7 @@ void PatchMatchController::RunStages(const Workspace& workspace,
                                      const std::vector<StereoProblem>& problems,
                                      const StagePlan& plan,
                                      InputCache* inputs,
-                                     StageRunner* runner,
+                                     WorkerPool* workers,
                                      RunStatistics* statistics) {
   const int num_stages = static_cast<int>(plan.stages().size());
   const int num_problems = static_cast<int>(problems.size());
@@ -176,38 +202,58 @@ void PatchMatchController::RunStages(const Workspace& workspace,
     const Stage& stage = plan.stages()[s];
     const int num_needed = plan.CountNeeded(s);
     inputs->ForgetDepths();
-    int number = 0;
+    std::vector<int> needed;
     for (int p = 0; p < num_problems; ++p) {
+      if (plan.IsNeeded(s, p)) needed.push_back(p);
+    }
+    // Guards the statistics, the progress and what follows.
+    std::mutex mutex;
+    int number = 0;
+    workers->Run(needed, [&](StageRunner* runner, int p) {
       cancel_.ThrowIfCancelled();
-      if (!plan.IsNeeded(s, p)) continue;
       const std::string& name = workspace.ImageName(problems[p].ref_image);
-      ++number;
-      if (statistics->HasFailed(name)) continue;
+      const double work = WorkOf(plan, s, problems[p]);
+      double counted = 0;  // of `work`, in done_work
+      ProgressEvent event = {stage.name, name, 0, num_needed, 0};
+      const auto count = [&](double fraction) {
+        const std::lock_guard<std::mutex> lock(mutex);
+        done_work += fraction * work - counted;
+        counted = fraction * work;
+        event.fraction = done_work / total_work;
+        if (fraction < 1) progress_(event);
+      };
+      {
+        const std::lock_guard<std::mutex> lock(mutex);
+        event.image_number = ++number;
+        if (statistics->HasFailed(name)) return;
+      }
       log_(LogLevel::kInfo,
            fmt::format("Processing view {} / {} for {} ({})",
-                       number,
+                       event.image_number,
                        num_needed,
                        name,
                        stage.name));
-      ProgressEvent event = {stage.name, name, number, num_needed, 0};
-      const double work = WorkOf(plan, s, problems[p]);
       RunControl control;
       control.cancel = &cancel_;
-      control.progress = [&](double fraction) {
-        event.fraction = (done_work + fraction * work) / total_work;
-        progress_(event);
-      };
+      control.progress = count;
       try {
         const StageResult result = runner->Run(s, p, control);
+        const std::lock_guard<std::mutex> lock(mutex);
         statistics->Add(
             name, stage, plan.CameraOf(s, problems[p].ref_image), result);
       } catch (const Error& error) {
-        if (error.code() != ErrorCode::kBadInput) throw;
+        if (error.code() != ErrorCode::kBadInput) {
+          const std::lock_guard<std::mutex> lock(mutex);
+          --number;
+          done_work -= counted;
+          throw;
+        }
         log_(LogLevel::kError, error.what());
+        const std::lock_guard<std::mutex> lock(mutex);
         statistics->AddFailure(name);
       }
-      done_work += work;
-    }
+      count(1);
+    });
     progress_({stage.name,
                "",
                num_needed,

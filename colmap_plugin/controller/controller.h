@@ -43,7 +43,7 @@ struct RunSummary {
 class InputCache;
 class RunStatistics;
 class StagePlan;
-class StageRunner;
+class WorkerPool;
 struct StereoProblem;
 
 class PatchMatchController {
@@ -64,7 +64,7 @@ class PatchMatchController {
                  const std::vector<StereoProblem>& problems,
                  const StagePlan& plan,
                  InputCache* inputs,
-                 StageRunner* runner,
+                 WorkerPool* workers,
                  RunStatistics* statistics);
 
   ControllerOptions options_;

@@ -26,30 +26,40 @@ InputCache::InputCache(const Workspace& workspace,
       depths_(max_bytes - max_bytes / kImageShare) {}
 
 std::shared_ptr<const GrayImage> InputCache::Image(int image, int level) {
-  if (unreadable_.count(image) > 0) return nullptr;
   const int64_t key = static_cast<int64_t>(image) * kMaxLevels + level;
-  if (auto cached = images_.Find(key)) return cached;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (unreadable_.count(image) > 0) return nullptr;
+    if (auto cached = images_.Find(key)) return cached;
+  }
   try {
     const Camera& camera = workspace_.camera(image);
     GrayImage full =
         LoadGrayImage(workspace_.ImagePath(image), camera.width, camera.height);
     auto loaded = std::make_shared<const GrayImage>(
         level == 0 ? std::move(full) : ShrinkImage(full, level));
+    const std::lock_guard<std::mutex> lock(mutex_);
     images_.Insert(key, loaded, loaded->data.size());
     return loaded;
   } catch (const Error& error) {
-    log_(LogLevel::kWarning, error.what());
-    unreadable_.insert(image);
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (unreadable_.insert(image).second) {
+      log_(LogLevel::kWarning, error.what());
+    }
     return nullptr;
   }
 }
 
 std::shared_ptr<const std::vector<float>> InputCache::InverseDepth(
     int image, const Camera& camera, const StageFiles& files) {
-  if (auto cached = depths_.Find(image)) return cached;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (auto cached = depths_.Find(image)) return cached;
+  }
   try {
     auto inverse = std::make_shared<const std::vector<float>>(InverseDepths(
         ReadHypotheses(files.depth, files.normal, camera), camera));
+    const std::lock_guard<std::mutex> lock(mutex_);
     depths_.Insert(image, inverse, inverse->size() * sizeof(float));
     return inverse;
   } catch (const Error&) {
@@ -57,7 +67,13 @@ std::shared_ptr<const std::vector<float>> InputCache::InverseDepth(
   }
 }
 
+void InputCache::ForgetDepths() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  depths_.Clear();
+}
+
 std::vector<std::string> InputCache::UnreadableImages() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
   std::vector<std::string> names;
   for (const int image : unreadable_)
     names.push_back(workspace_.ImageName(image));

@@ -1,5 +1,6 @@
 // Images and depth maps of the workspace, read when needed and kept within a
-// bound; images that cannot be read are remembered and reported once.
+// bound; images that cannot be read are remembered and reported once. All
+// methods may be called from several threads.
 #pragma once
 
 #include "colmap_plugin/controller/stages.h"
@@ -8,6 +9,7 @@
 #include "src/image/gray_image.h"
 
 #include <memory>
+#include <mutex>
 #include <set>
 #include <string>
 #include <vector>
@@ -28,7 +30,7 @@ class InputCache {
       int image, const Camera& camera, const StageFiles& files);
 
   // Depth maps belong to one stage: forget those of the stage before.
-  void ForgetDepths() { depths_.Clear(); }
+  void ForgetDepths();
 
   // Names of the images that could not be read so far.
   std::vector<std::string> UnreadableImages() const;
@@ -36,6 +38,8 @@ class InputCache {
  private:
   const Workspace& workspace_;
   LogSink log_;
+  // Held to look up and to keep, not to read: threads decode side by side.
+  mutable std::mutex mutex_;
   LruCache<int64_t, GrayImage> images_;  // by image and level
   LruCache<int, std::vector<float>> depths_;
   std::set<int> unreadable_;

@@ -43,6 +43,8 @@ struct PatchMatchStereoOptions {
 struct HpmOptions {
   std::string method = "hpm";    // see src/engine/schedule.h
   std::string quality = "high";  // see colmap_plugin/tool/quality.h
+  std::string device = "auto";   // auto, cpu or cuda
+  int gpu_images = -1;  // in flight per entry of gpu_index; -1: by memory
   std::string cpu_target =
       "auto";  // auto, scalar, or a SIMD target of this machine
   int num_iterations =

@@ -34,6 +34,31 @@ MemoryNeeds LargestNeeds(const Workspace& workspace,
   return needs;
 }
 
+ProblemSize LargestProblem(const Workspace& workspace,
+                           const std::vector<StereoProblem>& problems,
+                           bool geometric) {
+  ProblemSize size = {1, 1, 1, 1, 1, geometric};
+  for (const StereoProblem& problem : problems) {
+    const Camera& ref = workspace.camera(problem.ref_image);
+    size.width = std::max(size.width, ref.width);
+    size.height = std::max(size.height, ref.height);
+    for (const int src : problem.src_images) {
+      const Camera& camera = workspace.camera(src);
+      size.src_width = std::max(size.src_width, camera.width);
+      size.src_height = std::max(size.src_height, camera.height);
+    }
+    size.num_srcs =
+        std::max(size.num_srcs, static_cast<int>(problem.src_images.size()));
+  }
+  return size;
+}
+
+int ImagesInMemory(const MemoryNeeds& needs, int most, uint64_t limit) {
+  int count = std::max(most, 1);
+  while (count > 1 && needs.inputs + count * needs.working > limit / 2) --count;
+  return count;
+}
+
 uint64_t CacheBytes(double gibibytes) {
   constexpr double kMaxGibibytes = 1 << 20;
   return static_cast<uint64_t>(std::min(gibibytes, kMaxGibibytes) *

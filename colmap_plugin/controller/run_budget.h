@@ -2,6 +2,7 @@
 #pragma once
 
 #include "colmap_plugin/controller/stages.h"
+#include "cuda/memory_estimate.h"
 #include "src/engine/backend.h"
 
 #include <cstdint>
@@ -11,8 +12,9 @@ namespace hpm {
 
 // Largest need over all problems, in bytes.
 struct MemoryNeeds {
-  uint64_t working = 0;  // of the backend and the maps being written
-  uint64_t inputs = 0;   // images and depth maps of one problem
+  uint64_t working =
+      0;  // per image in flight: of the backend and the maps being written
+  uint64_t inputs = 0;  // images and depth maps of one problem
 };
 
 MemoryNeeds LargestNeeds(const Workspace& workspace,
@@ -21,6 +23,15 @@ MemoryNeeds LargestNeeds(const Workspace& workspace,
                          bool geometric);
 
 // Of --PatchMatchStereo.cache_size, which may be absurdly large.
+// The largest of all sizes, for memory on a GPU.
+ProblemSize LargestProblem(const Workspace& workspace,
+                           const std::vector<StereoProblem>& problems,
+                           bool geometric);
+
+// How many of `most` images may be worked on at once within `limit` bytes; at
+// least 1.
+int ImagesInMemory(const MemoryNeeds& needs, int most, uint64_t limit);
+
 uint64_t CacheBytes(double gibibytes);
 
 uint64_t BytesToWrite(const std::vector<StereoProblem>& problems,

@@ -116,6 +116,10 @@ std::vector<OptionSpec> MakeTable() {
           "Write colour pictures of the maps to stereo/previews"),
       Stereo(kCommon, "num_threads", &P::num_threads, AtLeast(-1),
              "Threads to use; -1 or 0: all cores"),
+      Hpm(kCommon, "device", &H::device, OneOf({"auto", "cpu", "cuda"}),
+          "auto: GPUs that pass a self-test, else the CPU; cuda: GPUs or an error"),
+      Stereo(kCommon, "gpu_index", &P::gpu_index, IndexList(),
+             "GPUs to use: -1 all, or a list as 0,1; a GPU named twice gets twice the images"),
       Stereo(kCommon, "cache_size", &P::cache_size, Above(0), "Memory for images and maps in GiB"),
       Row(
           kCommon, "project_path", [](ToolOptions* o) { return &o->project_path; }, Anything(),
@@ -165,6 +169,8 @@ std::vector<OptionSpec> MakeTable() {
              "Also write stereo/consistency_graphs"),
 
       // Fine tuning, and what has no meaning in this method.
+      Hpm(kExpert, "gpu_images", &H::gpu_images, AtLeast(-1),
+          "Images in flight per entry of gpu_index; -1 or 0: three, or fewer if memory is short"),
       Hpm(kExpert, "cpu_target", &H::cpu_target, Anything(),
           "SIMD instructions to use: auto, scalar, or a target of this machine"),
       Hpm(kExpert, "num_iterations", &H::num_iterations, AtLeast(1),
@@ -187,8 +193,6 @@ std::vector<OptionSpec> MakeTable() {
           "Cap of the reprojection error in the geometric term, in pixels"),
       Hpm(kExpert, "num_levels", &H::num_levels, Between(-1, 8),
           "Levels of the prior hierarchy or image pyramid; -1 or 0: by image size"),
-      Stereo(kExpert, "gpu_index", &P::gpu_index, IndexList(), "GPUs to use",
-             "this build computes on the CPU"),
       Stereo(kExpert, "window_step", &P::window_step, Between(1, 2), "Pixel stride in the window",
              "the stride of the window is part of the method"),
       Stereo(kExpert, "sigma_color", &P::sigma_color, Above(0),

@@ -17,6 +17,9 @@ namespace hpm {
 struct RunControl {
   const CancelToken* cancel;
   std::function<void(double)> progress;  // share of the pass that is done, 0..1
+  // The map is as this backend's last Run left it, but for its priors; a
+  // backend that holds a copy need not fetch it again.
+  bool continues = false;
 };
 
 class Backend {
@@ -32,6 +35,10 @@ class Backend {
 
   // Takes the images and cameras of a problem; replaces the problem before.
   virtual void SetViews(const ViewSet& views, const MethodParams& params) = 0;
+
+  // Whether Run takes priors of a coarser level (HypothesisMap::prior_level)
+  // and upsamples them itself.
+  virtual bool UpsamplesPriors() const { return false; }
 
   // Runs one pass in place. Throws Error(kInterrupted) when cancelled.
   virtual void Run(const Pass& pass,

@@ -61,6 +61,7 @@ void RunStage(Backend* backend,
   for (size_t i = 0; i < stage.passes.size(); ++i) {
     const Pass& pass = stage.passes[i];
     RunControl pass_control = control;
+    pass_control.continues = i > 0 && !stage.from_coarser;
     pass_control.progress = [&](double fraction) {
       if (control.progress) {
         control.progress((static_cast<double>(i) + fraction) / num_passes);
@@ -68,11 +69,15 @@ void RunStage(Backend* backend,
     };
     if (pass.kind == PassKind::kPrior) {
       PhaseTimer timer(times, "build prior");
-      map->priors = BuildPrior(*map,
-                               views.ref.camera,
-                               *views.ref.image,
-                               pass.level,
-                               {views.depth_min, views.depth_max});
+      const PriorRange range = {views.depth_min, views.depth_max};
+      if (backend->UpsamplesPriors()) {
+        map->priors =
+            BuildLevelPrior(*map, views.ref.camera, pass.level, range);
+        map->prior_level = pass.level;
+      } else {
+        map->priors = BuildPrior(
+            *map, views.ref.camera, *views.ref.image, pass.level, range);
+      }
     }
     if (pass.regions != RegionPriors::kNone) {
       PhaseTimer timer(times, "build prior");
@@ -87,6 +92,7 @@ void RunStage(Backend* backend,
       KeepUnlessClearlyBetter(carried, map);
     }
     map->priors = {};
+    map->prior_level = 0;
   }
 }
 

@@ -20,6 +20,9 @@ struct HypothesisMap {
   std::vector<Plane>
       priors;  // empty: no priors; distance 0: none at this pixel
 
+  // Halvings of the grid of `priors`; above 0 only for backends that upsample.
+  int prior_level = 0;
+
   HypothesisMap() = default;
   HypothesisMap(int w, int h)
       : width(w),

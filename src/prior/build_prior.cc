@@ -4,15 +4,21 @@
 
 namespace hpm {
 
+std::vector<Plane> BuildLevelPrior(const HypothesisMap& map,
+                                   const Camera& camera,
+                                   int level,
+                                   const PriorRange& range) {
+  const LevelMap reduced = MakeLevel(map, camera, level);
+  return MakePlanarPrior(
+      reduced.camera, FindCrediblePoints(reduced, kCredibleCost), range);
+}
+
 std::vector<Plane> BuildPrior(const HypothesisMap& map,
                               const Camera& camera,
                               const GrayImage& guide,
                               int level,
                               const PriorRange& range) {
-  const LevelMap reduced = MakeLevel(map, camera, level);
-  const std::vector<CrediblePoint> points =
-      FindCrediblePoints(reduced, kCredibleCost);
-  std::vector<Plane> planes = MakePlanarPrior(reduced.camera, points, range);
+  std::vector<Plane> planes = BuildLevelPrior(map, camera, level, range);
   if (level == 0) return planes;
   return UpsamplePrior(planes, level, camera, guide, range);
 }

@@ -1,4 +1,4 @@
-// The prior of one level, at full resolution: what a prior-assisted pass needs.
+// The prior of one level: what a prior-assisted pass needs.
 #pragma once
 
 #include "src/image/gray_image.h"
@@ -11,6 +11,12 @@ namespace hpm {
 
 // Costs below this make a point credible (tau of the paper).
 constexpr float kCredibleCost = 0.1f;
+
+// One plane per pixel of LevelCamera(camera, level), distance 0 = none.
+std::vector<Plane> BuildLevelPrior(const HypothesisMap& map,
+                                   const Camera& camera,
+                                   int level,
+                                   const PriorRange& range);
 
 // One plane per pixel of `map`, distance 0 = none. `guide` is the reference
 // image.

@@ -1,7 +1,5 @@
-// Joint bilateral upsampling of a prior to full resolution (HPM-MVS
-// section 3.3; specification section 8, with its corrections: planes are
-// evaluated at the pixel, so slanted surfaces stay exact; missing taps are
-// skipped; the guide is read where the tap lies).
+// Joint bilateral upsampling of a prior to full resolution, see
+// src/core/upsample_plane.h.
 #pragma once
 
 #include "src/image/gray_image.h"

@@ -74,6 +74,26 @@ class WrongOptions(CliTest):
         self.assert_exit(run("stereo_fusion"), 2, "stereo_fusion")
 
 
+class Device(CliTest):
+    """No GPU is visible, whatever the machine has."""
+
+    HIDDEN = {**os.environ, "CUDA_VISIBLE_DEVICES": ""}
+
+    def test_cuda_without_a_gpu_is_exit_6_and_names_the_remedy(self):
+        workspace = self.workspace()
+        result = self.run_tool(workspace, *FAST, "--Hpm.device", "cuda", env=self.HIDDEN)
+        self.assert_exit(result, 6, "--Hpm.device cpu")
+        self.assertEqual(map_files(workspace), {})
+
+    def test_auto_without_a_gpu_says_so_and_gives_the_maps_of_the_cpu(self):
+        auto, cpu = self.workspace(), self.workspace()
+        result = self.run_tool(auto, *FAST, env=self.HIDDEN)
+        self.assert_exit(result, 0)
+        self.assertEqual(result.stdout.count("No GPU is used"), 1)
+        self.assert_exit(self.run_tool(cpu, *FAST, "--Hpm.device", "cpu"), 0)
+        self.assert_same_maps(map_files(auto), map_files(cpu))
+
+
 class Locale(CliTest):
     def test_a_decimal_comma_changes_nothing(self):
         installed = subprocess.run(["locale", "-a"], stdout=subprocess.PIPE, text=True).stdout

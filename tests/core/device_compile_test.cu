@@ -6,6 +6,7 @@
 #include "src/core/match_cost.h"
 #include "src/core/median_filter.h"
 #include "src/core/update_pixel.h"
+#include "src/core/upsample_plane.h"
 
 namespace hpm {
 

@@ -123,6 +123,8 @@ TEST(OptionTableTest, EveryMemberOfHpmOptionsIsAnOption) {
   // here.
   const auto& [method,
                quality,
+               device,
+               gpu_images,
                cpu_target,
                num_iterations,
                num_geom_iterations,
@@ -136,8 +138,8 @@ TEST(OptionTableTest, EveryMemberOfHpmOptionsIsAnOption) {
                num_levels,
                previews,
                overwrite] = HpmOptions();
-  (void)method, (void)cpu_target, (void)num_iterations,
-      (void)num_geom_iterations;
+  (void)method, (void)device, (void)gpu_images, (void)cpu_target,
+      (void)num_iterations, (void)num_geom_iterations;
   (void)num_geom_passes, (void)geom_weight, (void)geom_max_error,
       (void)num_levels;
   (void)previews, (void)overwrite;
@@ -149,6 +151,8 @@ TEST(OptionTableTest, EveryMemberOfHpmOptionsIsAnOption) {
                            "prior",
                            "weak_gradient",
                            "smoothness",
+                           "device",
+                           "gpu_images",
                            "cpu_target",
                            "num_iterations",
                            "num_geom_iterations",
@@ -249,6 +253,8 @@ const std::vector<Values>& ValueTable() {
        {HpmOptions().method, "acmh"},
        {"", "ACMH", "zzz"},
        "acmh, "},
+      {"Hpm.device", {"auto", "cpu", "cuda"}, {"", "gpu", "CPU"}, "auto, cpu"},
+      {"Hpm.gpu_images", {"-1", "0", "4"}, {"-2", "1.5"}, ">= -1"},
       {"Hpm.cpu_target", {"auto"}, {}, ""},
       {"Hpm.num_iterations", {"1", "3"}, {"0", "-1", "2.5"}, ">= 1"},
       {"Hpm.num_geom_iterations", {"1", "2"}, {"0"}, ">= 1"},

@@ -1,0 +1,382 @@
+#include "cuda/cuda_backend.h"
+
+#include "cuda/band_planner.h"
+#include "cuda/device_images.h"
+#include "cuda/device_memory.h"
+#include "cuda/launch.h"
+#include "cuda/problem_tables.h"
+#include "cuda/sweeps.h"
+#include "src/base/error.h"
+#include "src/engine/phase_timer.h"
+
+#include <algorithm>
+#include <array>
+#include <deque>
+#include <optional>
+#include <utility>
+
+namespace hpm {
+namespace {
+
+const char* PhaseOf(SweepKind kind) {
+  switch (kind) {
+    case SweepKind::kInitialize:
+      return "initialise";
+    case SweepKind::kUpdate:
+      return "update";
+    case SweepKind::kMedian:
+      return "median";
+    case SweepKind::kConsistency:
+      break;
+  }
+  return "filter";
+}
+
+// Stream, events and the launches that are on their way.
+class LaunchQueue {
+ public:
+  LaunchQueue() {
+    CheckCuda(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking),
+              "opening a stream");
+    for (auto& pair : events_) {
+      for (cudaEvent_t& event : pair) {
+        CheckCuda(cudaEventCreateWithFlags(&event, cudaEventBlockingSync),
+                  "making an event");
+      }
+    }
+  }
+  ~LaunchQueue() {
+    // Nothing may still write into memory that is about to be freed.
+    cudaStreamSynchronize(stream_);
+    for (auto& pair : events_) {
+      for (cudaEvent_t event : pair) cudaEventDestroy(event);
+    }
+    cudaStreamDestroy(stream_);
+  }
+  LaunchQueue(const LaunchQueue&) = delete;
+  LaunchQueue& operator=(const LaunchQueue&) = delete;
+
+  cudaStream_t stream() const { return stream_; }
+
+  // Times start(); keeps two launches on the card and hands the oldest to
+  // finished(kind, rows, seconds) before it adds a third.
+  template <class Start, class Finished>
+  void Add(SweepKind kind,
+           int num_rows,
+           const Start& start,
+           const Finished& finished) {
+    if (pending_.size() == events_.size()) FinishOldest(finished);
+    const size_t slot = next_slot_++ % events_.size();
+    CheckCuda(cudaEventRecord(events_[slot][0], stream_), "timing a launch");
+    start();
+    CheckCuda(cudaEventRecord(events_[slot][1], stream_), "timing a launch");
+    pending_.push_back({kind, num_rows, slot});
+  }
+
+  template <class Finished>
+  void FinishAll(const Finished& finished) {
+    while (!pending_.empty()) FinishOldest(finished);
+  }
+
+  // After an error: forget the launches.
+  void Abandon() { pending_.clear(); }
+
+ private:
+  struct Pending {
+    SweepKind kind;
+    int num_rows;
+    size_t slot;
+  };
+
+  template <class Finished>
+  void FinishOldest(const Finished& finished) {
+    const Pending oldest = pending_.front();
+    pending_.pop_front();
+    const auto& events = events_[oldest.slot];
+    CheckCuda(cudaEventSynchronize(events[1]), "running a kernel");
+    float milliseconds = 0;
+    CheckCuda(cudaEventElapsedTime(&milliseconds, events[0], events[1]),
+              "timing a launch");
+    finished(oldest.kind, oldest.num_rows, 1e-3 * milliseconds);
+  }
+
+  cudaStream_t stream_ = nullptr;
+  std::array<std::array<cudaEvent_t, 2>, 2> events_ = {};
+  std::deque<Pending> pending_;
+  size_t next_slot_ = 0;
+};
+
+class CudaBackendImpl : public CudaBackend {
+ public:
+  explicit CudaBackendImpl(const CudaOptions& options)
+      : options_(options), planner_(options.launch_seconds) {
+    UseDevice();
+    cudaDeviceProp properties;
+    CheckCuda(cudaGetDeviceProperties(&properties, options.device),
+              "asking for the device");
+    name_ = properties.name;
+    queue_.emplace();
+    images_.emplace(options.format);
+    counter_.Reserve(1);
+  }
+
+  ~CudaBackendImpl() override {
+    cudaSetDevice(options_.device);
+    queue_.reset();
+  }
+
+  std::string Name() const override {
+    return "cuda " + std::to_string(options_.device) + ": " + name_;
+  }
+
+  uint64_t MemoryNeeded(int width, int height, int) const override {
+    return static_cast<uint64_t>(width) * height *
+           (2 * sizeof(Plane) + 2 * sizeof(uint32_t));
+  }
+
+  bool UpsamplesPriors() const override { return true; }
+
+  void SetViews(const ViewSet& views, const MethodParams& params) override {
+    UseDevice();
+    PhaseTimer timer(&seconds_, "upload");
+    resident_ = nullptr;
+    num_evaluations_ = 0;
+    random_key_ = views.random_key;
+    planner_ = BandPlanner(options_.launch_seconds);
+    tables_ = MakeProblemTables(views, params);
+    images_->Upload(views, stream());
+    std::vector<const float*> depths;
+    for (size_t j = 0; j < views.srcs.size(); ++j) {
+      tables_.views[j].texels = images_->texels(static_cast<int>(j));
+      depths.push_back(images_->inverse_depth(static_cast<int>(j)));
+    }
+    color_weights_.Upload(tables_.color_weights, stream());
+    views_.Upload(tables_.views, stream());
+    to_src_.Upload(tables_.to_src, stream());
+    to_ref_.Upload(tables_.to_ref, stream());
+    src_centers_.Upload(tables_.src_centers, stream());
+    depths_.Upload(depths, stream());
+    Wait("copying tables to the card");
+    DeviceProblem& problem = tables_.problem;
+    problem.ref_grey = images_->ref_grey();
+    problem.color_weights = color_weights_.data();
+    problem.views = views_.data();
+    problem.to_src = to_src_.data();
+    problem.to_ref = to_ref_.data();
+    problem.inverse_depths = depths_.data();
+    problem.src_centers = src_centers_.data();
+    problem.texture = images_->texture();
+    problem.texture_scale = images_->texture_scale();
+  }
+
+  void Run(const Pass& pass,
+           const SamplingPattern& pattern,
+           HypothesisMap* map,
+           const RunControl& control) override {
+    UseDevice();
+    tables_.problem.pattern = pattern;
+    const PixelState state = Upload(*map, control.continues);
+    const int num_steps = NumSteps(pass);
+    int step = 0;
+    for (const Sweep& sweep : SweepsOf(pass, random_key_)) {
+      RunSweep(sweep, state, nullptr, control);
+      if (step < num_steps && control.progress) {
+        control.progress(static_cast<double>(++step) / num_steps);
+      }
+    }
+    Finish();
+    PhaseTimer timer(&seconds_, "download");
+    const size_t size = map->planes.size();
+    planes_.Download(map->planes.data(), size, stream());
+    costs_.Download(map->costs.data(), size, stream());
+    masks_.Download(map->masks.data(), size, stream());
+    Wait("copying maps from the card");
+    resident_ = map;
+  }
+
+  std::vector<uint32_t> ConsistentViews(const HypothesisMap& map,
+                                        const FilterParams& filter,
+                                        bool geometric,
+                                        const RunControl& control) override {
+    UseDevice();
+    const PixelState state = Upload(map, control.continues);
+    std::vector<uint32_t> consistent(map.planes.size());
+    consistent_.Reserve(consistent.size());
+    for (const Sweep& sweep : ConsistencySweeps(filter, geometric)) {
+      RunSweep(sweep, state, consistent_.data(), control);
+    }
+    Finish();
+    consistent_.Download(consistent.data(), consistent.size(), stream());
+    Wait("copying masks from the card");
+    return consistent;
+  }
+
+  std::vector<float> Costs(const HypothesisMap& map) override {
+    UseDevice();
+    const PixelState state = Upload(map, false);
+    const size_t size = map.planes.size() * tables_.problem.params.num_views;
+    DeviceBuffer<float> costs;
+    costs.Reserve(size);
+    for (int color = 0; color < 2; ++color) {
+      SweepLaunch launch = {};
+      launch.problem = &tables_.problem;
+      launch.state = state;
+      launch.band = BandOf(state, color, 0, state.height);
+      if (options_.format == ImageFormat::kQuad) {
+        LaunchQuadCosts(launch, costs.data(), stream());
+      } else {
+        LaunchTextureCosts(launch, costs.data(), stream());
+      }
+    }
+    std::vector<float> result(size);
+    costs.Download(result.data(), size, stream());
+    Wait("computing costs");
+    return result;
+  }
+
+  uint64_t num_cost_evaluations() const override { return num_evaluations_; }
+  const std::map<std::string, double>& seconds() const override {
+    return seconds_;
+  }
+  double longest_launch() const override { return longest_launch_; }
+
+ private:
+  // The current device belongs to the thread.
+  void UseDevice() const {
+    CheckCuda(cudaSetDevice(options_.device), "choosing the device");
+  }
+  cudaStream_t stream() const { return queue_->stream(); }
+  void Wait(const char* doing) const {
+    CheckCuda(cudaStreamSynchronize(stream()), doing);
+  }
+
+  PixelState Upload(const HypothesisMap& map, bool continues) {
+    PhaseTimer timer(&seconds_, "upload");
+    const size_t size = map.planes.size();
+    if (!continues || resident_ != &map) {
+      planes_.Upload(map.planes, stream());
+      costs_.Upload(map.costs, stream());
+      masks_.Upload(map.masks, stream());
+    }
+    resident_ = nullptr;
+    PixelState state = {map.width,
+                        map.height,
+                        planes_.data(),
+                        costs_.data(),
+                        masks_.data(),
+                        nullptr};
+    if (!map.priors.empty() && map.prior_level == 0) {
+      priors_.Upload(map.priors, stream());
+      state.priors = priors_.data();
+    } else if (!map.priors.empty()) {
+      low_priors_.Upload(map.priors, stream());
+      LaunchUpsample(tables_.problem,
+                     low_priors_.data(),
+                     map.prior_level,
+                     priors_.Reserve(size),
+                     stream());
+      state.priors = priors_.data();
+    }
+    const unsigned long long zero = 0;
+    counter_.Upload(&zero, 1, stream());
+    Wait("copying maps to the card");
+    return state;
+  }
+
+  Band BandOf(const PixelState& state,
+              int color,
+              int first_row,
+              int num_rows) const {
+    return {state.width,
+            state.height,
+            first_row,
+            num_rows,
+            color,
+            options_.log_tile_width};
+  }
+
+  void RunSweep(const Sweep& sweep,
+                const PixelState& state,
+                uint32_t* consistent,
+                const RunControl& control) {
+    DeviceProblem problem = tables_.problem;
+    problem.params.geometric = sweep.geometric;
+    SweepLaunch launch = {};
+    launch.problem = &problem;
+    launch.sweep = sweep;
+    launch.state = state;
+    launch.consistent = consistent;
+    launch.num_evaluations = counter_.data();
+    launch.pooled = options_.pooled;
+    for (int row = 0; row < state.height;) {
+      if (control.cancel->cancelled()) {
+        queue_->Abandon();
+        Wait("stopping");
+        control.cancel->ThrowIfCancelled();
+      }
+      launch.band = BandOf(state, sweep.color, row, 1);
+      launch.band.num_rows = planner_.NextRows(
+          sweep.kind, state.height - row, launch.band.tile_height());
+      queue_->Add(
+          sweep.kind,
+          launch.band.num_rows,
+          [&] {
+            if (options_.format == ImageFormat::kQuad) {
+              LaunchQuadSweep(launch, stream());
+            } else {
+              LaunchTextureSweep(launch, stream());
+            }
+          },
+          [this](SweepKind kind, int rows, double taken) {
+            Report(kind, rows, taken);
+          });
+      row += launch.band.num_rows;
+    }
+  }
+
+  void Report(SweepKind kind, int num_rows, double taken) {
+    planner_.Report(kind, num_rows, taken);
+    seconds_[PhaseOf(kind)] += taken;
+    longest_launch_ = std::max(longest_launch_, taken);
+  }
+
+  void Finish() {
+    queue_->FinishAll([this](SweepKind kind, int rows, double taken) {
+      Report(kind, rows, taken);
+    });
+    unsigned long long count = 0;
+    counter_.Download(&count, 1, stream());
+    Wait("running kernels");
+    num_evaluations_ += count;
+  }
+
+  CudaOptions options_;
+  std::string name_;
+  std::optional<LaunchQueue> queue_;
+  std::optional<DeviceImages> images_;
+  BandPlanner planner_;
+  ProblemTables tables_;
+  uint64_t random_key_ = 0;
+  DeviceBuffer<float> color_weights_;
+  DeviceBuffer<ViewGeometry> views_;
+  DeviceBuffer<ViewWarp> to_src_, to_ref_;
+  DeviceBuffer<Vec3f> src_centers_;
+  DeviceBuffer<const float*> depths_;
+  DeviceBuffer<Plane> planes_, priors_, low_priors_;
+  DeviceBuffer<float> costs_;
+  DeviceBuffer<uint32_t> masks_, consistent_;
+  DeviceBuffer<unsigned long long> counter_;
+  // The map whose hypotheses the card holds as they are on the host.
+  const HypothesisMap* resident_ = nullptr;
+  uint64_t num_evaluations_ = 0;
+  std::map<std::string, double> seconds_;
+  double longest_launch_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<CudaBackend> MakeCudaBackend(const CudaOptions& options) {
+  return std::make_unique<CudaBackendImpl>(options);
+}
+
+}  // namespace hpm

@@ -1,0 +1,42 @@
+// The CUDA backend: kernels of src/core's decisions on one card. One object
+// works on one image at a time, in a stream of its own; several objects on one
+// card overlap their transfers and host work.
+#pragma once
+
+#include "cuda/samplers.h"
+#include "src/engine/backend.h"
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace hpm {
+
+struct CudaOptions {
+  int device = 0;
+  ImageFormat format = ImageFormat::kByte;
+  bool pooled = true;            // see warp_pool.h
+  int log_tile_width = 3;        // see pixel_tiles.h
+  double launch_seconds = 0.03;  // aimed at; see band_planner.h
+};
+
+class CudaBackend : public Backend {
+ public:
+  // Costs of each pixel's plane in every view, [pixel * num_views + view], for
+  // tests. After SetViews.
+  virtual std::vector<float> Costs(const HypothesisMap& map) = 0;
+
+  // Seconds on the card since construction, by kind: "initialise", "update",
+  // "median", "filter"; "upload" and "download" are of the host's clock.
+  virtual const std::map<std::string, double>& seconds() const = 0;
+
+  // Longest launch so far, seconds.
+  virtual double longest_launch() const = 0;
+};
+
+// Throws GpuError(kDevice) if the device cannot be used,
+// GpuError(kOutOfResources) if it has no memory left; so do all methods.
+std::unique_ptr<CudaBackend> MakeCudaBackend(const CudaOptions& options);
+
+}  // namespace hpm

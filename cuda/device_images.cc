@@ -1,0 +1,127 @@
+#include "cuda/device_images.h"
+
+#include "cuda/launch.h"
+
+#include <algorithm>
+
+#include <cuda_runtime.h>
+
+namespace hpm {
+namespace {
+
+cudaChannelFormatDesc ChannelsOf(ImageFormat format) {
+  switch (format) {
+    case ImageFormat::kHalf:
+      return cudaCreateChannelDesc(16, 0, 0, 0, cudaChannelFormatKindFloat);
+    case ImageFormat::kFloat:
+      return cudaCreateChannelDesc(32, 0, 0, 0, cudaChannelFormatKindFloat);
+    default:
+      return cudaCreateChannelDesc(8, 0, 0, 0, cudaChannelFormatKindUnsigned);
+  }
+}
+
+size_t BytesPerElement(ImageFormat format) {
+  return static_cast<size_t>(ChannelsOf(format).x) / 8;
+}
+
+}  // namespace
+
+DeviceImages::~DeviceImages() { FreeTexture(); }
+
+const uint32_t* DeviceImages::texels(int j) const {
+  return format_ == ImageFormat::kQuad ? texels_[j].data() : nullptr;
+}
+
+void DeviceImages::Upload(const ViewSet& views, cudaStream_t stream) {
+  const int num_srcs = static_cast<int>(views.srcs.size());
+  ref_.Upload(views.ref.image->data, stream);
+  int width = 1, height = 1;
+  for (const View& src : views.srcs) {
+    width = std::max(width, src.image->width);
+    height = std::max(height, src.image->height);
+  }
+  const bool quad = format_ == ImageFormat::kQuad;
+  if (quad) {
+    texels_.resize(num_srcs);
+  } else {
+    MakeTexture(width, height, num_srcs);
+  }
+  const size_t row_bytes =
+      static_cast<size_t>(width) * BytesPerElement(format_);
+  for (int j = 0; j < num_srcs; ++j) {
+    const GrayImage& image = *views.srcs[j].image;
+    grey_.Upload(image.data, stream);
+    if (quad) {
+      LaunchPackTexels(grey_.data(),
+                       image.width,
+                       image.height,
+                       texels_[j].Reserve(image.data.size()),
+                       stream);
+      continue;
+    }
+    uint8_t* layer = layer_.Reserve(row_bytes * height);
+    LaunchFillLayer(grey_.data(),
+                    image.width,
+                    image.height,
+                    width,
+                    height,
+                    format_,
+                    layer,
+                    stream);
+    cudaMemcpy3DParms copy = {};
+    copy.srcPtr = make_cudaPitchedPtr(layer, row_bytes, width, height);
+    copy.dstArray = array_;
+    copy.dstPos = make_cudaPos(0, 0, j);
+    copy.extent = make_cudaExtent(width, height, 1);
+    copy.kind = cudaMemcpyDeviceToDevice;
+    CheckCuda(cudaMemcpy3DAsync(&copy, stream), "filling a texture");
+  }
+
+  depths_.resize(num_srcs);
+  depth_pointers_.assign(num_srcs, nullptr);
+  for (int j = 0; j < num_srcs; ++j) {
+    if (views.srcs[j].inverse_depth == nullptr) continue;
+    depths_[j].Upload(*views.srcs[j].inverse_depth, stream);
+    depth_pointers_[j] = depths_[j].data();
+  }
+  CheckCuda(cudaStreamSynchronize(stream), "copying images to the card");
+}
+
+void DeviceImages::MakeTexture(int width, int height, int num_layers) {
+  if (texture_ != 0 && width == width_ && height == height_ &&
+      num_layers == num_layers_) {
+    return;
+  }
+  FreeTexture();
+  const cudaChannelFormatDesc channels = ChannelsOf(format_);
+  CheckCuda(cudaMalloc3DArray(&array_,
+                              &channels,
+                              make_cudaExtent(width, height, num_layers),
+                              cudaArrayLayered),
+            "reserving textures");
+  cudaResourceDesc resource = {};
+  resource.resType = cudaResourceTypeArray;
+  resource.res.array.array = array_;
+  cudaTextureDesc description = {};
+  description.addressMode[0] = cudaAddressModeClamp;
+  description.addressMode[1] = cudaAddressModeClamp;
+  description.filterMode = cudaFilterModeLinear;
+  description.readMode = format_ == ImageFormat::kByte
+                             ? cudaReadModeNormalizedFloat
+                             : cudaReadModeElementType;
+  CheckCuda(
+      cudaCreateTextureObject(&texture_, &resource, &description, nullptr),
+      "making a texture");
+  width_ = width;
+  height_ = height;
+  num_layers_ = num_layers;
+}
+
+void DeviceImages::FreeTexture() {
+  if (texture_ != 0) cudaDestroyTextureObject(texture_);
+  if (array_ != nullptr) cudaFreeArray(array_);
+  texture_ = 0;
+  array_ = nullptr;
+}
+
+}  // namespace hpm

@@ -1,0 +1,49 @@
+// The images and depth maps of a problem on the card.
+#pragma once
+
+#include "cuda/device_memory.h"
+#include "cuda/samplers.h"
+#include "src/engine/view.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace hpm {
+
+class DeviceImages {
+ public:
+  explicit DeviceImages(ImageFormat format) : format_(format) {}
+  ~DeviceImages();
+  DeviceImages(const DeviceImages&) = delete;
+  DeviceImages& operator=(const DeviceImages&) = delete;
+
+  // Replaces what was there. Returns after the copies have left the host.
+  void Upload(const ViewSet& views, cudaStream_t stream);
+
+  const uint8_t* ref_grey() const { return ref_.data(); }
+  // Of source view j; null unless the format is kQuad.
+  const uint32_t* texels(int j) const;
+  // 0 if the format is kQuad.
+  cudaTextureObject_t texture() const { return texture_; }
+  // Grey levels per unit of what the texture returns.
+  float texture_scale() const {
+    return format_ == ImageFormat::kByte ? 255.0f : 1.0f;
+  }
+  // Of source view j; null: it has no depth map.
+  const float* inverse_depth(int j) const { return depth_pointers_[j]; }
+
+ private:
+  void MakeTexture(int width, int height, int num_layers);
+  void FreeTexture();
+
+  ImageFormat format_;
+  DeviceBuffer<uint8_t> ref_, grey_, layer_;
+  std::vector<DeviceBuffer<uint32_t>> texels_;
+  std::vector<DeviceBuffer<float>> depths_;
+  std::vector<const float*> depth_pointers_;
+  cudaArray_t array_ = nullptr;
+  cudaTextureObject_t texture_ = 0;
+  int width_ = 0, height_ = 0, num_layers_ = 0;  // of array_
+};
+
+}  // namespace hpm

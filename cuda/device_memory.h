@@ -1,0 +1,71 @@
+// Memory of the card that lives as long as its object.
+#pragma once
+
+#include "cuda/check.h"
+
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace hpm {
+
+// Uninitialised room for elements; grows and never shrinks, so that image after
+// image of the same size allocates nothing.
+template <class T>
+class DeviceBuffer {
+ public:
+  DeviceBuffer() = default;
+  ~DeviceBuffer() { Free(); }
+  DeviceBuffer(DeviceBuffer&& other) noexcept { Swap(&other); }
+  DeviceBuffer& operator=(DeviceBuffer&& other) noexcept {
+    Swap(&other);
+    return *this;
+  }
+
+  T* data() const { return data_; }
+
+  // The elements are lost if the room must grow.
+  T* Reserve(size_t size) {
+    if (size > size_) {
+      Free();
+      CheckCuda(cudaMalloc(reinterpret_cast<void**>(&data_), size * sizeof(T)),
+                "reserving memory");
+      size_ = size;
+    }
+    return data_;
+  }
+
+  void Upload(const T* from, size_t size, cudaStream_t stream) {
+    Reserve(size);
+    CheckCuda(
+        cudaMemcpyAsync(
+            data_, from, size * sizeof(T), cudaMemcpyHostToDevice, stream),
+        "copying to the card");
+  }
+  void Upload(const std::vector<T>& from, cudaStream_t stream) {
+    Upload(from.data(), from.size(), stream);
+  }
+
+  void Download(T* to, size_t size, cudaStream_t stream) const {
+    CheckCuda(cudaMemcpyAsync(
+                  to, data_, size * sizeof(T), cudaMemcpyDeviceToHost, stream),
+              "copying from the card");
+  }
+
+  void Free() {
+    if (data_ != nullptr) cudaFree(data_);
+    data_ = nullptr;
+    size_ = 0;
+  }
+
+ private:
+  void Swap(DeviceBuffer* other) {
+    std::swap(data_, other->data_);
+    std::swap(size_, other->size_);
+  }
+
+  T* data_ = nullptr;
+  size_t size_ = 0;
+};
+
+}  // namespace hpm

@@ -1,0 +1,92 @@
+// One problem as the kernels see it: plain data, pointers into the memory of
+// whoever runs the kernels (a card, or the host in the tests).
+#pragma once
+
+#include "src/core/checkerboard.h"
+#include "src/core/match_cost.h"
+#include "src/core/visit.h"
+
+#include <stdint.h>
+
+namespace hpm {
+
+// What the matching cost needs of a source view; one 16-byte aligned record, so
+// that a lane fetches it in five wide loads.
+struct alignas(16) ViewGeometry {
+  float M[9];  // of ViewWarp
+  float v[3];
+  float max_u, max_v;  // width - 1, height - 1
+  int32_t width, height;
+  const uint32_t* texels;  // four taps per pixel, see texel_image.h; or null
+  uint64_t padding;
+};
+static_assert(sizeof(ViewGeometry) == 80, "five loads of 16 bytes");
+
+struct DeviceProblem {
+  VisitParams params;
+  PatchShape shape;
+  SamplingPattern pattern;
+  const uint8_t* ref_grey;     // row-major, no padding
+  const float* color_weights;  // 256: exp(-d * shape.color_falloff)
+  const ViewGeometry* views;
+  const ViewWarp* to_src;  // for the geometric term
+  const ViewWarp* to_ref;
+  const float* const* inverse_depths;  // null: the view has no depth map
+  const Vec3f* src_centers;            // in the reference camera frame
+  unsigned long long texture;          // layered, one layer per view
+  float texture_scale;                 // grey levels per unit of a fetch
+};
+
+// The window of the reference image at a pixel, read once for all its costs.
+HPM_HD RefPatch RefPatchAt(const DeviceProblem& problem, int col, int row) {
+  const int width = problem.params.ref.width;
+  const int height = problem.params.ref.height;
+  return MakeRefPatch(
+      problem.shape,
+      [&](int c, int r) {
+        c = c < 0 ? 0 : (c < width ? c : width - 1);
+        r = r < 0 ? 0 : (r < height ? r : height - 1);
+        return static_cast<float>(
+            problem.ref_grey[static_cast<size_t>(r) * width + c]);
+      },
+      [&](float difference) {
+        return problem.color_weights[static_cast<int>(difference)];
+      },
+      col,
+      row);
+}
+
+HPM_HD bool HasDepthMap(const DeviceProblem& problem, int view) {
+  return problem.inverse_depths[view] != nullptr;
+}
+
+// Pixels; 0 for a view without depth map, which has no say.
+HPM_HD float GeometricErrorAt(const DeviceProblem& problem,
+                              const Plane& plane,
+                              int view,
+                              int col,
+                              int row) {
+  const float* inverse_depth = problem.inverse_depths[view];
+  if (inverse_depth == nullptr) return 0;
+  const int width = problem.to_src[view].width;
+  const int height = problem.to_src[view].height;
+  return ReprojectionError(
+      problem.to_src[view],
+      problem.to_ref[view],
+      SlopeOf(problem.params.ref, plane),
+      static_cast<float>(col),
+      static_cast<float>(row),
+      problem.params.geometric_term.max_error,
+      [&](float u, float v) {
+        return InterpolateInverseDepth(
+            [&](int c, int r) {
+              return inverse_depth[static_cast<size_t>(r) * width + c];
+            },
+            width,
+            height,
+            u,
+            v);
+      });
+}
+
+}  // namespace hpm

@@ -1,0 +1,133 @@
+// Kernels that need no matching cost: the median and the making of images.
+#include "cuda/check.h"
+#include "cuda/launch.h"
+#include "cuda/texel_image.h"
+
+#include <cuda_fp16.h>
+
+namespace hpm {
+namespace {
+
+constexpr int kBlock = 128;
+
+__global__ void MedianKernel(const Camera camera,
+                             const PixelState state,
+                             const Band band) {
+  const int64_t thread =
+      static_cast<int64_t>(blockIdx.x) * blockDim.x + threadIdx.x;
+  if (thread >= band.num_warps() * kWarpSize) return;
+  const Pixel pixel =
+      PixelOf(band, thread / kWarpSize, static_cast<int>(thread % kWarpSize));
+  if (!pixel.inside) return;
+  MedianFilterPixel(camera, state, pixel.col, pixel.row);
+}
+
+__global__ void Upsample(const __grid_constant__ DeviceProblem problem,
+                         const Plane* low,
+                         int level,
+                         Plane* planes) {
+  const int width = problem.params.ref.width;
+  const size_t at = static_cast<size_t>(blockIdx.x) * blockDim.x + threadIdx.x;
+  if (at >= static_cast<size_t>(width) * problem.params.ref.height) return;
+  planes[at] = UpsampledPriorAt(problem,
+                                low,
+                                level,
+                                static_cast<int>(at % width),
+                                static_cast<int>(at / width));
+}
+
+__global__ void PackTexels(const uint8_t* grey,
+                           int width,
+                           int height,
+                           uint32_t* texels) {
+  const size_t at = static_cast<size_t>(blockIdx.x) * blockDim.x + threadIdx.x;
+  if (at >= static_cast<size_t>(width) * height) return;
+  texels[at] = TexelAt(grey,
+                       width,
+                       height,
+                       static_cast<int>(at % width),
+                       static_cast<int>(at / width));
+}
+
+template <class Element>
+__global__ void FillLayer(const uint8_t* grey,
+                          int width,
+                          int height,
+                          int layer_width,
+                          int layer_height,
+                          Element* layer) {
+  const size_t at = static_cast<size_t>(blockIdx.x) * blockDim.x + threadIdx.x;
+  if (at >= static_cast<size_t>(layer_width) * layer_height) return;
+  const int col = min(static_cast<int>(at % layer_width), width - 1);
+  const int row = min(static_cast<int>(at / layer_width), height - 1);
+  const uint8_t value = grey[static_cast<size_t>(row) * width + col];
+  if constexpr (sizeof(Element) == sizeof(__half)) {
+    layer[at] = __float2half(static_cast<float>(value));
+  } else {
+    layer[at] = static_cast<Element>(value);
+  }
+}
+
+unsigned Blocks(size_t threads) {
+  return static_cast<unsigned>((threads + kBlock - 1) / kBlock);
+}
+
+}  // namespace
+
+void LaunchMedian(const SweepLaunch& launch, cudaStream_t stream) {
+  MedianKernel<<<Blocks(launch.band.num_warps() * kWarpSize),
+                 kBlock,
+                 0,
+                 stream>>>(
+      launch.problem->params.ref, launch.state, launch.band);
+  CheckCuda(cudaGetLastError(), "starting the median");
+}
+
+void LaunchUpsample(const DeviceProblem& problem,
+                    const Plane* low,
+                    int level,
+                    Plane* planes,
+                    cudaStream_t stream) {
+  const Camera& ref = problem.params.ref;
+  Upsample<<<Blocks(static_cast<size_t>(ref.width) * ref.height),
+             kBlock,
+             0,
+             stream>>>(problem, low, level, planes);
+  CheckCuda(cudaGetLastError(), "upsampling a prior");
+}
+
+void LaunchPackTexels(const uint8_t* grey,
+                      int width,
+                      int height,
+                      uint32_t* texels,
+                      cudaStream_t stream) {
+  const size_t size = static_cast<size_t>(width) * height;
+  PackTexels<<<Blocks(size), kBlock, 0, stream>>>(grey, width, height, texels);
+  CheckCuda(cudaGetLastError(), "packing an image");
+}
+
+void LaunchFillLayer(const uint8_t* grey,
+                     int width,
+                     int height,
+                     int layer_width,
+                     int layer_height,
+                     ImageFormat format,
+                     void* layer,
+                     cudaStream_t stream) {
+  const unsigned blocks =
+      Blocks(static_cast<size_t>(layer_width) * layer_height);
+  const auto fill = [&](auto* elements) {
+    FillLayer<<<blocks, kBlock, 0, stream>>>(
+        grey, width, height, layer_width, layer_height, elements);
+  };
+  if (format == ImageFormat::kHalf) {
+    fill(static_cast<__half*>(layer));
+  } else if (format == ImageFormat::kFloat) {
+    fill(static_cast<float*>(layer));
+  } else {
+    fill(static_cast<uint8_t*>(layer));
+  }
+  CheckCuda(cudaGetLastError(), "making a texture");
+}
+
+}  // namespace hpm

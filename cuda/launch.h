@@ -1,0 +1,61 @@
+// Starting kernels; the arguments are plain, the memory is the card's. All
+// return at once and throw GpuError(kDevice) if the launch is refused.
+#pragma once
+
+#include "cuda/pixel_kernels.h"
+#include "cuda/pixel_tiles.h"
+#include "cuda/samplers.h"
+
+#include <cuda_runtime_api.h>
+
+namespace hpm {
+
+struct SweepLaunch {
+  const DeviceProblem* problem;  // of the host; params.geometric set
+  Sweep sweep;
+  PixelState state;
+  uint32_t* consistent;
+  Band band;
+  unsigned long long* num_evaluations;  // added to
+  bool pooled;  // see warp_pool.h; else each lane works alone
+};
+
+void LaunchTextureSweep(const SweepLaunch& launch, cudaStream_t stream);
+void LaunchQuadSweep(const SweepLaunch& launch, cudaStream_t stream);
+void LaunchMedian(const SweepLaunch& launch, cudaStream_t stream);
+
+// costs[pixel * num_views + view] of each pixel's plane in the band.
+void LaunchTextureCosts(const SweepLaunch& launch,
+                        float* costs,
+                        cudaStream_t stream);
+void LaunchQuadCosts(const SweepLaunch& launch,
+                     float* costs,
+                     cudaStream_t stream);
+
+// planes[pixel of ref] from those of a coarser level; see
+// src/core/upsample_plane.h.
+void LaunchUpsample(const DeviceProblem& problem,
+                    const Plane* low,
+                    int level,
+                    Plane* planes,
+                    cudaStream_t stream);
+
+// See texel_image.h.
+void LaunchPackTexels(const uint8_t* grey,
+                      int width,
+                      int height,
+                      uint32_t* texels,
+                      cudaStream_t stream);
+
+// The image at the size of the layers, the border repeated, in the elements of
+// `format` (not kQuad).
+void LaunchFillLayer(const uint8_t* grey,
+                     int width,
+                     int height,
+                     int layer_width,
+                     int layer_height,
+                     ImageFormat format,
+                     void* layer,
+                     cudaStream_t stream);
+
+}  // namespace hpm

@@ -1,0 +1,39 @@
+#include "cuda/problem_tables.h"
+
+#include "src/engine/visit_params.h"
+
+#include <cmath>
+
+namespace hpm {
+
+ProblemTables MakeProblemTables(const ViewSet& views,
+                                const MethodParams& params) {
+  ProblemTables tables = {};
+  tables.problem.params = MakeVisitParams(views, params);
+  tables.problem.shape = MakePatchShape(
+      params.patch_radius, params.sigma_spatial, params.sigma_color);
+  for (int i = 0; i < 256; ++i) {
+    tables.color_weights.push_back(
+        std::exp(-static_cast<float>(i) * tables.problem.shape.color_falloff));
+  }
+  for (const View& src : views.srcs) {
+    const ViewWarp warp = MakeViewWarp(views.ref.camera, src.camera);
+    tables.to_src.push_back(warp);
+    tables.to_ref.push_back(MakeViewWarp(src.camera, views.ref.camera));
+    tables.src_centers.push_back(
+        CamFromWorld(views.ref.camera, Center(src.camera)));
+    ViewGeometry geometry = {};
+    for (int i = 0; i < 9; ++i) geometry.M[i] = warp.M.m[i];
+    geometry.v[0] = warp.v.x;
+    geometry.v[1] = warp.v.y;
+    geometry.v[2] = warp.v.z;
+    geometry.width = src.image->width;
+    geometry.height = src.image->height;
+    geometry.max_u = static_cast<float>(src.image->width - 1);
+    geometry.max_v = static_cast<float>(src.image->height - 1);
+    tables.views.push_back(geometry);
+  }
+  return tables;
+}
+
+}  // namespace hpm

@@ -1,0 +1,24 @@
+// The small tables of a problem, computed on the host; images and maps are
+// moved by whoever owns the memory.
+#pragma once
+
+#include "cuda/device_problem.h"
+#include "src/engine/pass.h"
+#include "src/engine/view.h"
+
+#include <vector>
+
+namespace hpm {
+
+struct ProblemTables {
+  DeviceProblem problem;  // all pointers null
+  std::vector<float> color_weights;
+  std::vector<ViewGeometry> views;  // texels null
+  std::vector<ViewWarp> to_src, to_ref;
+  std::vector<Vec3f> src_centers;
+};
+
+ProblemTables MakeProblemTables(const ViewSet& views,
+                                const MethodParams& params);
+
+}  // namespace hpm

@@ -1,0 +1,45 @@
+#include "cuda/sweeps.h"
+
+namespace hpm {
+
+int NumSteps(const Pass& pass) { return 2 + 2 * pass.num_iterations; }
+
+std::vector<Sweep> SweepsOf(const Pass& pass, uint64_t random_key) {
+  const uint64_t pass_key = CombineBits(random_key, pass.id);
+  Sweep sweep = {};
+  sweep.geometric = pass.kind == PassKind::kGeometric;
+  sweep.start = pass.start;
+  std::vector<Sweep> sweeps;
+  const auto add_both_colors = [&] {
+    for (sweep.color = 0; sweep.color < 2; ++sweep.color) {
+      sweeps.push_back(sweep);
+    }
+  };
+  sweep.kind = SweepKind::kInitialize;
+  sweep.key = CombineBits(pass_key, 0);
+  add_both_colors();
+  sweep.kind = SweepKind::kUpdate;
+  for (int iteration = 0; iteration < pass.num_iterations; ++iteration) {
+    sweep.iteration = iteration;
+    sweep.key = CombineBits(pass_key, 1 + iteration);
+    add_both_colors();
+  }
+  if (pass.median) {
+    sweep.kind = SweepKind::kMedian;
+    add_both_colors();
+  }
+  return sweeps;
+}
+
+std::vector<Sweep> ConsistencySweeps(const FilterParams& filter,
+                                     bool geometric) {
+  Sweep sweep = {};
+  sweep.kind = SweepKind::kConsistency;
+  sweep.filter = filter;
+  sweep.geometric = geometric;
+  std::vector<Sweep> sweeps(2, sweep);
+  sweeps[1].color = 1;
+  return sweeps;
+}
+
+}  // namespace hpm

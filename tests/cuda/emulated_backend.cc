@@ -1,0 +1,225 @@
+#include "tests/cuda/emulated_backend.h"
+
+#include "cuda/direct_cost.h"
+#include "cuda/pixel_tiles.h"
+#include "cuda/texel_image.h"
+#include "cuda/warp_pool.h"
+#include "tests/cuda/host_warp.h"
+
+#include <algorithm>
+#include <memory>
+
+namespace hpm {
+namespace {
+
+struct Launch {
+  const DeviceProblem& problem;
+  const Sweep& sweep;
+  const PixelState& state;
+  uint32_t* consistent;
+  Band band;
+};
+
+template <SweepKind kKind, class Cost>
+void Visit(const Launch& launch, const Cost& cost, const Pixel& pixel) {
+  VisitPixel<kKind>(launch.problem,
+                    launch.sweep,
+                    launch.state,
+                    launch.consistent,
+                    cost,
+                    pixel.col,
+                    pixel.row);
+}
+
+// Calls visit(pixel) for all pixels of the band, as DirectSweep would.
+template <class VisitOne>
+void ForEachPixel(const Band& band, const VisitOne& visit) {
+  for (int64_t warp = 0; warp < band.num_warps(); ++warp) {
+    for (int lane = 0; lane < kWarpSize; ++lane) {
+      const Pixel pixel = PixelOf(band, warp, lane);
+      if (pixel.inside) visit(pixel);
+    }
+  }
+}
+
+template <SweepKind kKind>
+uint64_t RunCore(const Launch& launch) {
+  uint64_t evaluations = 0;
+  ForEachPixel(launch.band, [&](const Pixel& pixel) {
+    const RefPatch patch = RefPatchAt(launch.problem, pixel.col, pixel.row);
+    const CoreCost cost(launch.problem, patch, pixel.col, pixel.row);
+    Visit<kKind>(launch, cost, pixel);
+    evaluations += cost.num_evaluations();
+  });
+  return evaluations;
+}
+
+template <SweepKind kKind, class Sampler>
+uint64_t RunDirect(const Launch& launch) {
+  uint64_t evaluations = 0;
+  ForEachPixel(launch.band, [&](const Pixel& pixel) {
+    WindowSample samples[kPatchSize];
+    const RefPatch patch = RefPatchAt(launch.problem, pixel.col, pixel.row);
+    StoreWindow(patch, samples, 1);
+    const Window window = {
+        samples, 1, patch.center, patch.mean, patch.variance};
+    const DirectCost<Sampler> cost(
+        launch.problem, window, pixel.col, pixel.row);
+    Visit<kKind>(launch, cost, pixel);
+    evaluations += cost.num_evaluations();
+  });
+  return evaluations;
+}
+
+template <SweepKind kKind, class Sampler>
+uint64_t RunPooled(const Launch& launch) {
+  uint64_t evaluations = 0;
+  const auto pool = std::make_unique<WarpPool>();
+  const auto machine = std::make_unique<HostWarp>();
+  for (int64_t number = 0; number < launch.band.num_warps(); ++number) {
+    machine->Run([&](const HostWarp::Lane& lane) {
+      const Pixel pixel = PixelOf(launch.band, number, lane.lane());
+      if (pixel.inside) {
+        pool->SetPixel(lane.lane(),
+                       RefPatchAt(launch.problem, pixel.col, pixel.row),
+                       pixel.col,
+                       pixel.row);
+        const PooledCost<Sampler, HostWarp::Lane> cost(
+            launch.problem, lane, pool.get(), pixel.col, pixel.row);
+        Visit<kKind>(launch, cost, pixel);
+        evaluations += cost.num_evaluations();
+      }
+      ServeOthers<Sampler>(launch.problem, lane, pool.get());
+    });
+  }
+  return evaluations;
+}
+
+template <SweepKind kKind>
+uint64_t RunWith(EmulatedCost cost, const Launch& launch) {
+  switch (cost) {
+    case EmulatedCost::kCore:
+      return RunCore<kKind>(launch);
+    case EmulatedCost::kDirectQuad:
+      return RunDirect<kKind, QuadSampler>(launch);
+    case EmulatedCost::kDirectTexture:
+      return RunDirect<kKind, TextureSampler>(launch);
+    case EmulatedCost::kPooledQuad:
+      break;
+  }
+  // As on the card, only the updates are pooled.
+  if constexpr (kKind == SweepKind::kUpdate) {
+    return RunPooled<kKind, QuadSampler>(launch);
+  } else {
+    return RunDirect<kKind, QuadSampler>(launch);
+  }
+}
+
+}  // namespace
+
+void EmulatedBackend::SetViews(const ViewSet& views,
+                               const MethodParams& params) {
+  views_ = views;
+  tables_ = MakeProblemTables(views, params);
+  texels_.clear();
+  inverse_depths_.clear();
+  num_evaluations_ = 0;
+  for (size_t j = 0; j < views.srcs.size(); ++j) {
+    const GrayImage& image = *views_.srcs[j].image;
+    std::vector<uint32_t> texels;
+    for (int row = 0; row < image.height; ++row) {
+      for (int col = 0; col < image.width; ++col) {
+        texels.push_back(
+            TexelAt(image.data.data(), image.width, image.height, col, row));
+      }
+    }
+    texels_.push_back(std::move(texels));
+    tables_.views[j].texels = texels_.back().data();
+    inverse_depths_.push_back(views_.srcs[j].inverse_depth
+                                  ? views_.srcs[j].inverse_depth->data()
+                                  : nullptr);
+  }
+  DeviceProblem& problem = tables_.problem;
+  problem.ref_grey = views_.ref.image->data.data();
+  problem.color_weights = tables_.color_weights.data();
+  problem.views = tables_.views.data();
+  problem.to_src = tables_.to_src.data();
+  problem.to_ref = tables_.to_ref.data();
+  problem.inverse_depths = inverse_depths_.data();
+  problem.src_centers = tables_.src_centers.data();
+}
+
+void EmulatedBackend::RunSweep(const Sweep& sweep,
+                               const PixelState& state,
+                               uint32_t* consistent) {
+  tables_.problem.params.geometric = sweep.geometric;
+  for (int first = 0; first < state.height; first += options_.rows_per_band) {
+    const Launch launch = {
+        tables_.problem,
+        sweep,
+        state,
+        consistent,
+        {state.width,
+         state.height,
+         first,
+         std::min(options_.rows_per_band, state.height - first),
+         sweep.color,
+         options_.log_tile_width}};
+    switch (sweep.kind) {
+      case SweepKind::kInitialize:
+        num_evaluations_ +=
+            RunWith<SweepKind::kInitialize>(options_.cost, launch);
+        break;
+      case SweepKind::kUpdate:
+        num_evaluations_ += RunWith<SweepKind::kUpdate>(options_.cost, launch);
+        break;
+      case SweepKind::kConsistency:
+        num_evaluations_ +=
+            RunWith<SweepKind::kConsistency>(options_.cost, launch);
+        break;
+      case SweepKind::kMedian:
+        ForEachPixel(launch.band, [&](const Pixel& pixel) {
+          MedianFilterPixel(
+              tables_.problem.params.ref, state, pixel.col, pixel.row);
+        });
+        break;
+    }
+  }
+}
+
+void EmulatedBackend::Run(const Pass& pass,
+                          const SamplingPattern& pattern,
+                          HypothesisMap* map,
+                          const RunControl& control) {
+  tables_.problem.pattern = pattern;
+  PixelState state = map->View();
+  std::vector<Plane> priors;
+  if (map->prior_level > 0) {
+    for (int row = 0; row < map->height; ++row) {
+      for (int col = 0; col < map->width; ++col) {
+        priors.push_back(UpsampledPriorAt(
+            tables_.problem, map->priors.data(), map->prior_level, col, row));
+      }
+    }
+    state.priors = priors.data();
+  }
+  for (const Sweep& sweep : SweepsOf(pass, views_.random_key)) {
+    control.cancel->ThrowIfCancelled();
+    RunSweep(sweep, state, nullptr);
+  }
+}
+
+std::vector<uint32_t> EmulatedBackend::ConsistentViews(
+    const HypothesisMap& map,
+    const FilterParams& filter,
+    bool geometric,
+    const RunControl&) {
+  HypothesisMap copy = map;
+  std::vector<uint32_t> consistent(map.planes.size());
+  for (const Sweep& sweep : ConsistencySweeps(filter, geometric)) {
+    RunSweep(sweep, copy.View(), consistent.data());
+  }
+  return consistent;
+}
+
+}  // namespace hpm

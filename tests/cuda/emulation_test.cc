@@ -1,0 +1,258 @@
+// The CUDA backend's parts, driven on the host, against the CPU backend. What
+// a card adds to this is its own rounding and its hardware.
+#include "src/core/sampling_pattern.h"
+#include "src/cpu/cpu_backend.h"
+#include "src/engine/estimator.h"
+#include "tests/cpu/scene_views.h"
+#include "tests/cuda/emulated_backend.h"
+
+#include <cmath>
+#include <cstring>
+
+#include <gtest/gtest.h>
+
+namespace hpm {
+namespace {
+
+constexpr int kWidth = 61;
+constexpr int kHeight = 43;
+
+const Pass kBasic = {PassKind::kBasic, StartFrom::kRandom, 3, 0};
+const Pass kPrior = {PassKind::kPrior, StartFrom::kPrior, 2, 1};
+const Pass kGeometric = {PassKind::kGeometric, StartFrom::kCurrent, 2, 2};
+const Pass kNoMedian = {PassKind::kBasic, StartFrom::kCurrent, 1, 3, 0, false};
+const FilterParams kFilter = {0.1f, 0.05f, 1.0f, 2};
+
+struct Result {
+  HypothesisMap basic, prior, geometric, last;
+  std::vector<uint32_t> photometric_filter, geometric_filter;
+  uint64_t num_evaluations = 0;
+};
+
+template <class T>
+bool SameBytes(const std::vector<T>& a, const std::vector<T>& b) {
+  return a.size() == b.size() &&
+         std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+}
+
+bool SameMaps(const HypothesisMap& a, const HypothesisMap& b) {
+  return SameBytes(a.planes, b.planes) && SameBytes(a.costs, b.costs) &&
+         SameBytes(a.masks, b.masks);
+}
+
+class EmulationTest : public testing::Test {
+ protected:
+  // Sources differ in size, one is rolled and one has no depth map.
+  static ViewSet MakeViews(const std::string& scene, int width, int height) {
+    SceneOptions options;
+    options.num_views = 6;
+    options.width = width;
+    options.height = height;
+    options.quarter_turns = {0, 0, 1, 0, 0, 0};
+    const auto rendered = RenderViews(MakeScene(scene, options), 2);
+    ViewSet views = AsViewSet(rendered);
+    for (size_t j = 0; j < views.srcs.size(); ++j) {
+      std::vector<float> inverse;
+      for (const float z : rendered[j + 1].truth.depth) {
+        inverse.push_back(z > 0 ? 1 / z : 0);
+      }
+      views.srcs[j].inverse_depth =
+          std::make_shared<const std::vector<float>>(std::move(inverse));
+    }
+    views.srcs[3].inverse_depth = nullptr;
+    View& cropped = views.srcs[4];
+    cropped = Cropped(cropped, 2, 1, width - 5, height - 3);
+    cropped.inverse_depth = nullptr;
+    return views;
+  }
+
+  // A prior on a part of the image, near the truth.
+  static std::vector<Plane> MakePriors(const HypothesisMap& map) {
+    std::vector<Plane> priors = map.planes;
+    for (size_t i = 0; i < priors.size(); ++i) {
+      if (i % 7 == 0) priors[i].distance = 0;
+    }
+    return priors;
+  }
+
+  Result RunAll(Backend* backend,
+                const ViewSet& views,
+                const SamplingPattern& pattern) {
+    const int width = views.ref.camera.width;
+    const int height = views.ref.camera.height;
+    Result result;
+    backend->SetViews(views, MethodParams());
+    HypothesisMap map(width, height);
+    backend->Run(kBasic, pattern, &map, control_);
+    result.basic = map;
+    map.priors = MakePriors(map);
+    backend->Run(kPrior, pattern, &map, control_);
+    map.priors = {};
+    result.prior = map;
+    backend->Run(kGeometric, pattern, &map, control_);
+    result.geometric = map;
+    backend->Run(kNoMedian, pattern, &map, control_);
+    result.last = map;
+    result.photometric_filter =
+        backend->ConsistentViews(result.prior, kFilter, false, control_);
+    result.geometric_filter =
+        backend->ConsistentViews(result.geometric, kFilter, true, control_);
+    result.num_evaluations = backend->num_cost_evaluations();
+    return result;
+  }
+
+  void ExpectSameBytes(const Result& a, const Result& b) {
+    EXPECT_TRUE(SameMaps(a.basic, b.basic));
+    EXPECT_TRUE(SameMaps(a.prior, b.prior));
+    EXPECT_TRUE(SameMaps(a.geometric, b.geometric));
+    EXPECT_TRUE(SameMaps(a.last, b.last));
+    EXPECT_EQ(a.photometric_filter, b.photometric_filter);
+    EXPECT_EQ(a.geometric_filter, b.geometric_filter);
+    EXPECT_EQ(a.num_evaluations, b.num_evaluations);
+  }
+
+  const ViewSet views_ = MakeViews("sphere", kWidth, kHeight);
+  const SamplingPattern nesp_ = MakeSamplingPattern(true, true);
+  CancelToken cancel_;
+  RunControl control_ = {&cancel_, nullptr};
+};
+
+struct Shape {
+  int log_tile_width, rows_per_band;
+};
+class EveryShape : public EmulationTest,
+                   public testing::WithParamInterface<Shape> {};
+// Tiles of every width, bands that fit the tiles and bands that do not.
+INSTANTIATE_TEST_SUITE_P(Emulation,
+                         EveryShape,
+                         testing::Values(Shape{3, 1000},
+                                         Shape{1, 16},
+                                         Shape{2, 3},
+                                         Shape{4, 7},
+                                         Shape{5, 5},
+                                         Shape{6, 1}),
+                         [](const auto& test) {
+                           return "Tile" +
+                                  std::to_string(test.param.log_tile_width) +
+                                  "Band" +
+                                  std::to_string(test.param.rows_per_band);
+                         });
+
+// Everything but the matching cost, byte by byte: tables, sweeps, keys, tiles,
+// bands, window, geometric term, median, filter.
+TEST_P(EveryShape, GivesTheBytesOfTheScalarCpuBackend) {
+  EmulatedBackend emulated({EmulatedCost::kCore,
+                            GetParam().log_tile_width,
+                            GetParam().rows_per_band});
+  const auto cpu = MakeCpuBackend("scalar", 2);
+  const Result expected = RunAll(cpu.get(), views_, nesp_);
+  ExpectSameBytes(RunAll(&emulated, views_, nesp_), expected);
+  EXPECT_GT(expected.num_evaluations, 100u * kWidth * kHeight);
+}
+
+TEST_F(EmulationTest, GivesTheBytesOfTheCpuBackendWithTheLocalPattern) {
+  const SamplingPattern local = MakeSamplingPattern(false, false);
+  EmulatedBackend emulated({EmulatedCost::kCore, 3, 16});
+  const auto cpu = MakeCpuBackend("scalar", 2);
+  ExpectSameBytes(RunAll(&emulated, views_, local),
+                  RunAll(cpu.get(), views_, local));
+}
+
+// A whole method through the engine, priors of two levels upsampled by the
+// backend.
+TEST_F(EmulationTest, AMethodWithPriorsGivesTheBytesOfTheCpuBackend) {
+  const ViewSet views = MakeViews("low_texture_wall", 75, 58);
+  ScheduleOptions options;
+  options.num_levels = 3;
+  options.num_iterations = 2;
+  options.num_geom_passes = 1;
+  const Schedule schedule = MakeSchedule(options);
+  EmulatedBackend emulated({EmulatedCost::kCore, 3, 16});
+  const auto cpu = MakeCpuBackend("scalar", 2);
+  std::vector<HypothesisMap> maps;
+  for (Backend* backend : {static_cast<Backend*>(&emulated), cpu.get()}) {
+    HypothesisMap map(75, 58);
+    PhaseTimes times;
+    for (const StageSpec& stage : schedule.stages) {
+      RunStage(backend,
+               views,
+               schedule,
+               stage,
+               MethodParams(),
+               control_,
+               &map,
+               &times);
+    }
+    maps.push_back(std::move(map));
+  }
+  EXPECT_TRUE(SameMaps(maps[0], maps[1]));
+}
+
+// The warp that computes together gives what its lanes compute alone.
+TEST_F(EmulationTest, PooledWarpsGiveTheBytesOfLanesAlone) {
+  const ViewSet small = MakeViews("depth_step", 29, 19);
+  EmulatedBackend alone({EmulatedCost::kDirectQuad, 3, 16});
+  EmulatedBackend together({EmulatedCost::kPooledQuad, 3, 16});
+  ExpectSameBytes(RunAll(&together, small, nesp_),
+                  RunAll(&alone, small, nesp_));
+}
+
+// Shares of pixels whose depth differs by more than 1 %, beside those where
+// both maps match badly.
+double DifferingShare(const HypothesisMap& a,
+                      const HypothesisMap& b,
+                      const Camera& camera) {
+  int num_differing = 0;
+  for (int row = 0; row < a.height; ++row) {
+    for (int col = 0; col < a.width; ++col) {
+      const size_t at = static_cast<size_t>(row) * a.width + col;
+      const float x = static_cast<float>(col), y = static_cast<float>(row);
+      const float za = DepthAt(camera, a.planes[at], x, y);
+      const float zb = DepthAt(camera, b.planes[at], x, y);
+      num_differing += !(std::abs(za - zb) <= 0.01f * zb);
+    }
+  }
+  return num_differing / static_cast<double>(a.planes.size());
+}
+
+double MeanCost(const HypothesisMap& map) {
+  double sum = 0;
+  for (const float cost : map.costs) sum += cost;
+  return sum / static_cast<double>(map.costs.size());
+}
+
+class EveryCost : public EmulationTest,
+                  public testing::WithParamInterface<EmulatedCost> {};
+INSTANTIATE_TEST_SUITE_P(Emulation,
+                         EveryCost,
+                         testing::Values(EmulatedCost::kDirectQuad,
+                                         EmulatedCost::kDirectTexture),
+                         [](const auto& test) {
+                           return test.param == EmulatedCost::kDirectQuad
+                                      ? "Quad"
+                                      : "Texture";
+                         });
+
+TEST_P(EveryCost, MapsAreThoseOfTheCpuButForTies) {
+  for (const char* scene : {"sphere", "depth_step", "tilted_plane"}) {
+    const ViewSet views = MakeViews(scene, 96, 72);
+    EmulatedBackend emulated({GetParam(), 3, 16});
+    const auto cpu = MakeCpuBackend("scalar", 2);
+    const Result a = RunAll(&emulated, views, nesp_);
+    const Result b = RunAll(cpu.get(), views, nesp_);
+    const double basic = DifferingShare(a.basic, b.basic, views.ref.camera);
+    const double geometric =
+        DifferingShare(a.geometric, b.geometric, views.ref.camera);
+    RecordProperty(std::string(scene) + "_basic_permille",
+                   static_cast<int>(1000 * basic));
+    RecordProperty(std::string(scene) + "_geometric_permille",
+                   static_cast<int>(1000 * geometric));
+    std::printf("%s: basic %.4f, geometric %.4f\n", scene, basic, geometric);
+    EXPECT_LT(basic, 0.1) << scene;
+    EXPECT_LT(geometric, 0.05) << scene;
+    EXPECT_NEAR(MeanCost(a.geometric), MeanCost(b.geometric), 0.01) << scene;
+  }
+}
+
+}  // namespace
+}  // namespace hpm

@@ -1,0 +1,348 @@
+// Tests that need a card; without one each is skipped and says so.
+#include "cuda/cuda_backend.h"
+#include "cuda/cuda_devices.h"
+#include "cuda/direct_cost.h"
+#include "cuda/gpu_error.h"
+#include "cuda/self_test.h"
+#include "src/core/sampling_pattern.h"
+#include "src/cpu/cpu_backend.h"
+#include "tests/cpu/scene_views.h"
+#include "tests/cuda/emulated_backend.h"
+
+#include <cmath>
+#include <cstring>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+namespace hpm {
+namespace {
+
+const Pass kBasic = {PassKind::kBasic, StartFrom::kRandom, 3, 0};
+const Pass kPrior = {PassKind::kPrior, StartFrom::kPrior, 2, 1};
+const Pass kGeometric = {PassKind::kGeometric, StartFrom::kCurrent, 2, 2};
+
+struct Variant {
+  const char* name;
+  ImageFormat format;
+  bool pooled;
+};
+
+class GpuTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string why_none;
+    if (FindCudaDevices(&why_none).empty()) {
+      GTEST_SKIP() << "no GPU: " << why_none;
+    }
+  }
+
+  static std::unique_ptr<CudaBackend> Make(const Variant& variant,
+                                           double launch_seconds = 0.03) {
+    CudaOptions options;
+    options.format = variant.format;
+    options.pooled = variant.pooled;
+    options.launch_seconds = launch_seconds;
+    return MakeCudaBackend(options);
+  }
+
+  static ViewSet MakeViews(const std::string& scene, int width, int height) {
+    SceneOptions options;
+    options.num_views = 6;
+    options.width = width;
+    options.height = height;
+    options.quarter_turns = {0, 0, 1, 0, 0, 0};
+    rendered_ = RenderViews(MakeScene(scene, options), 2);
+    ViewSet views = AsViewSet(rendered_);
+    for (size_t j = 0; j < views.srcs.size(); ++j) {
+      std::vector<float> inverse;
+      for (const float z : rendered_[j + 1].truth.depth) {
+        inverse.push_back(z > 0 ? 1 / z : 0);
+      }
+      views.srcs[j].inverse_depth =
+          std::make_shared<const std::vector<float>>(std::move(inverse));
+    }
+    views.srcs[3].inverse_depth = nullptr;
+    View& cropped = views.srcs[4];
+    cropped = Cropped(cropped, 2, 1, width - 5, height - 3);
+    cropped.inverse_depth = nullptr;
+    return views;
+  }
+
+  struct Result {
+    HypothesisMap basic, prior, geometric;
+    std::vector<uint32_t> consistent;
+    uint64_t num_evaluations = 0;
+  };
+
+  Result RunAll(Backend* backend, const ViewSet& views) {
+    Result result;
+    backend->SetViews(views, MethodParams());
+    HypothesisMap map(views.ref.camera.width, views.ref.camera.height);
+    backend->Run(kBasic, pattern_, &map, control_);
+    result.basic = map;
+    map.priors = map.planes;
+    for (size_t i = 0; i < map.priors.size(); i += 7) {
+      map.priors[i].distance = 0;
+    }
+    RunControl continued = control_;
+    continued.continues = true;
+    backend->Run(kPrior, pattern_, &map, continued);
+    map.priors = {};
+    result.prior = map;
+    backend->Run(kGeometric, pattern_, &map, continued);
+    result.geometric = map;
+    result.consistent =
+        backend->ConsistentViews(map, {0.1f, 0.05f, 1.0f, 2}, true, control_);
+    result.num_evaluations = backend->num_cost_evaluations();
+    return result;
+  }
+
+  template <class T>
+  static bool SameBytes(const std::vector<T>& a, const std::vector<T>& b) {
+    return a.size() == b.size() &&
+           std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+  }
+  static void ExpectSameBytes(const Result& a, const Result& b) {
+    EXPECT_TRUE(SameBytes(a.basic.planes, b.basic.planes));
+    EXPECT_TRUE(SameBytes(a.prior.planes, b.prior.planes));
+    EXPECT_TRUE(SameBytes(a.geometric.planes, b.geometric.planes));
+    EXPECT_TRUE(SameBytes(a.geometric.costs, b.geometric.costs));
+    EXPECT_TRUE(SameBytes(a.geometric.masks, b.geometric.masks));
+    EXPECT_EQ(a.consistent, b.consistent);
+    EXPECT_EQ(a.num_evaluations, b.num_evaluations);
+  }
+
+  // Share of pixels whose depths differ by more than 1 %.
+  static double DifferingShare(const HypothesisMap& a,
+                               const HypothesisMap& b,
+                               const Camera& camera) {
+    int num_differing = 0;
+    for (int row = 0; row < a.height; ++row) {
+      for (int col = 0; col < a.width; ++col) {
+        const size_t at = static_cast<size_t>(row) * a.width + col;
+        const float x = static_cast<float>(col), y = static_cast<float>(row);
+        const float za = DepthAt(camera, a.planes[at], x, y);
+        const float zb = DepthAt(camera, b.planes[at], x, y);
+        num_differing += !(std::abs(za - zb) <= 0.01f * zb);
+      }
+    }
+    return num_differing / static_cast<double>(a.planes.size());
+  }
+
+  inline static std::vector<RenderedView> rendered_;
+  const SamplingPattern pattern_ = MakeSamplingPattern(true, true);
+  CancelToken cancel_;
+  RunControl control_ = {&cancel_, nullptr, false};
+};
+
+class EveryVariant : public GpuTest,
+                     public testing::WithParamInterface<Variant> {};
+INSTANTIATE_TEST_SUITE_P(
+    Gpu,
+    EveryVariant,
+    testing::Values(Variant{"BytePooled", ImageFormat::kByte, true},
+                    Variant{"ByteDirect", ImageFormat::kByte, false},
+                    Variant{"HalfPooled", ImageFormat::kHalf, true},
+                    Variant{"FloatPooled", ImageFormat::kFloat, true},
+                    Variant{"QuadPooled", ImageFormat::kQuad, true},
+                    Variant{"QuadDirect", ImageFormat::kQuad, false}),
+    [](const auto& test) { return test.param.name; });
+
+TEST_P(EveryVariant, PassesTheSelfTest) {
+  EXPECT_EQ(SelfTestFailure(Make(GetParam()).get()), "");
+}
+
+TEST_P(EveryVariant, CostsAreThoseOfTheHost) {
+  const ViewSet views = MakeViews("sphere", 96, 72);
+  const auto gpu = Make(GetParam());
+  EmulatedBackend host({EmulatedCost::kCore, 3, 16});
+  gpu->SetViews(views, MethodParams());
+  host.SetViews(views, MethodParams());
+  HypothesisMap map(96, 72);
+  std::mt19937 random(7);
+  for (int i = 0; i < 96 * 72; ++i) {
+    map.planes[i] = SomeHypothesis(rendered_[0], i % 96, i / 96, &random);
+  }
+  const std::vector<float> actual = gpu->Costs(map);
+  const int num_views = static_cast<int>(views.srcs.size());
+  double sum = 0;
+  float largest = 0;
+  int num_off = 0;
+  for (int i = 0; i < 96 * 72; ++i) {
+    const RefPatch patch = RefPatchAt(host.problem(), i % 96, i / 96);
+    const CoreCost core(host.problem(), patch, i % 96, i / 96);
+    for (int j = 0; j < num_views; ++j) {
+      const uint8_t view = static_cast<uint8_t>(j);
+      float expected;
+      core.Photometric(&map.planes[i], 1, &view, 1, &expected);
+      const float cost = actual[static_cast<size_t>(i) * num_views + j];
+      ASSERT_TRUE(cost >= 0 && cost <= kMaxCost) << i << ", view " << j;
+      const float difference = std::abs(cost - expected);
+      if ((cost == kMaxCost) != (expected == kMaxCost) && difference > 0.1f) {
+        ++num_off;  // at the border of the source
+        continue;
+      }
+      sum += difference;
+      largest = std::fmax(largest, difference);
+    }
+  }
+  const double mean = sum / (96 * 72 * num_views);
+  std::printf("%s: cost difference mean %.6f, largest %.4f, visibility %d\n",
+              GetParam().name,
+              mean,
+              static_cast<double>(largest),
+              num_off);
+  const bool exact = GetParam().format == ImageFormat::kQuad;
+  EXPECT_LT(largest, exact ? 2e-3f : 0.2f);
+  EXPECT_LT(mean, exact ? 1e-4 : 2e-3);
+  EXPECT_LE(num_off, 96 * 72 * num_views / 2000);
+}
+
+TEST_P(EveryVariant, MapsAreThoseOfTheCpuButForTies) {
+  const auto gpu = Make(GetParam());
+  const auto cpu = MakeCpuBackend("scalar", 0);
+  for (const char* scene : {"sphere", "depth_step", "tilted_plane"}) {
+    const ViewSet views = MakeViews(scene, 160, 120);
+    const Result a = RunAll(gpu.get(), views);
+    const Result b = RunAll(cpu.get(), views);
+    const double basic = DifferingShare(a.basic, b.basic, views.ref.camera);
+    const double geometric =
+        DifferingShare(a.geometric, b.geometric, views.ref.camera);
+    std::printf("%s %s: basic %.4f, geometric %.4f\n",
+                GetParam().name,
+                scene,
+                basic,
+                geometric);
+    EXPECT_LT(basic, 0.1) << scene;
+    EXPECT_LT(geometric, 0.08) << scene;
+  }
+}
+
+TEST_P(EveryVariant, TwoRunsGiveTheSameBytesAlsoInOtherBands) {
+  const ViewSet views = MakeViews("depth_step", 200, 150);
+  const Result once = RunAll(Make(GetParam()).get(), views);
+  ExpectSameBytes(RunAll(Make(GetParam()).get(), views), once);
+  ExpectSameBytes(RunAll(Make(GetParam(), 1e-5).get(), views), once);
+}
+
+TEST_F(GpuTest, PooledAndDirectGiveTheSameBytes) {
+  const ViewSet views = MakeViews("sphere", 200, 150);
+  for (const ImageFormat format : {ImageFormat::kByte, ImageFormat::kQuad}) {
+    ExpectSameBytes(RunAll(Make({"", format, true}).get(), views),
+                    RunAll(Make({"", format, false}).get(), views));
+  }
+}
+
+TEST_F(GpuTest, SeveralStreamsDoNotDisturbEachOther) {
+  const ViewSet views = MakeViews("sphere", 160, 120);
+  const Variant variant = {"", ImageFormat::kByte, true};
+  const Result expected = RunAll(Make(variant).get(), views);
+  std::vector<Result> results(4);
+  std::vector<std::thread> threads;
+  for (Result& result : results) {
+    threads.emplace_back([&] { result = RunAll(Make(variant).get(), views); });
+  }
+  for (std::thread& thread : threads) thread.join();
+  for (const Result& result : results) ExpectSameBytes(result, expected);
+}
+
+TEST_F(GpuTest, OneBackendTakesProblemsOfAllSizes) {
+  const auto reused = Make({"", ImageFormat::kByte, true});
+  for (const auto& [width, height] :
+       {std::pair(160, 120), std::pair(61, 43), std::pair(200, 150)}) {
+    const ViewSet views = MakeViews("tilted_plane", width, height);
+    ExpectSameBytes(RunAll(reused.get(), views),
+                    RunAll(Make({"", ImageFormat::kByte, true}).get(), views));
+  }
+}
+
+TEST_F(GpuTest, StopsWhenCancelled) {
+  const auto gpu = Make({"", ImageFormat::kByte, true});
+  const ViewSet views = MakeViews("sphere", 160, 120);
+  gpu->SetViews(views, MethodParams());
+  HypothesisMap map(160, 120);
+  Pass endless = kBasic;
+  endless.num_iterations = 1000000;
+  std::thread canceller([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    cancel_.Cancel();
+  });
+  ErrorCode code = ErrorCode::kFailure;
+  try {
+    gpu->Run(endless, pattern_, &map, control_);
+  } catch (const Error& error) {
+    code = error.code();
+  }
+  canceller.join();
+  EXPECT_EQ(code, ErrorCode::kInterrupted);
+  // It goes on afterwards.
+  CancelToken fresh;
+  gpu->Run(kBasic, pattern_, &map, {&fresh, nullptr, false});
+}
+
+TEST_F(GpuTest, TooLargeAProblemIsAnErrorThatLeavesTheCardUsable) {
+  const ViewSet views = MakeViews("sphere", 160, 120);
+  const auto gpu = Make({"", ImageFormat::kByte, true});
+  gpu->SetViews(views, MethodParams());
+  // Wider than a texture can be.
+  ViewSet wide = views;
+  const int width = 200000;
+  wide.srcs[0].camera.width = width;
+  wide.srcs[0].camera.height = 1;
+  wide.srcs[0].image = std::make_shared<const GrayImage>(
+      GrayImage{width, 1, std::vector<uint8_t>(width)});
+  wide.srcs[0].inverse_depth = nullptr;
+  EXPECT_THROW(gpu->SetViews(wide, MethodParams()), GpuError);
+  EXPECT_EQ(SelfTestFailure(gpu.get()), "");
+}
+
+// 108 million pixels: planes lie beyond 2^31 bytes. Only where the card and the
+// host have room.
+TEST_F(GpuTest, LargeImagesAreAddressedToTheirEnd) {
+  std::string why_none;
+  if (FindCudaDevices(&why_none)[0].free_bytes < (8ull << 30)) {
+    GTEST_SKIP() << "less than 8 GiB free";
+  }
+  const int width = 12000, height = 9000;
+  ViewSet views;
+  GrayImage image{width, height, {}};
+  std::mt19937 random(1);
+  image.data.resize(static_cast<size_t>(width) * height);
+  for (size_t i = 0; i < image.data.size(); ++i) {
+    image.data[i] = static_cast<uint8_t>(random() >> 24);
+  }
+  Camera camera = {width,
+                   height,
+                   9000,
+                   9000,
+                   0.5f * width,
+                   0.5f * height,
+                   {{1, 0, 0, 0, 1, 0, 0, 0, 1}},
+                   {0, 0, 0}};
+  views.ref = {
+      camera, std::make_shared<const GrayImage>(std::move(image)), nullptr};
+  // The source is the same picture from the same place: every plane fits.
+  views.srcs.push_back(views.ref);
+  views.depth_min = 1;
+  views.depth_max = 2;
+  views.random_key = 1;
+  for (const ImageFormat format : {ImageFormat::kByte, ImageFormat::kQuad}) {
+    const auto gpu = Make({"", format, true});
+    gpu->SetViews(views, MethodParams());
+    HypothesisMap map(width, height);
+    gpu->Run({PassKind::kBasic, StartFrom::kRandom, 1, 0, 0, true},
+             pattern_,
+             &map,
+             control_);
+    size_t num_bad = 0;
+    for (const float cost : map.costs) num_bad += !(cost < 0.01f);
+    EXPECT_LT(num_bad, map.costs.size() / 1000);
+    EXPECT_LT(map.costs.back(), 0.01f);
+    EXPECT_GT(map.planes.back().distance, 0);
+    EXPECT_LT(gpu->longest_launch(), 0.1);
+  }
+}
+
+}  // namespace
+}  // namespace hpm
