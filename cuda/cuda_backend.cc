@@ -174,7 +174,7 @@ class CudaBackendImpl : public CudaBackend {
            HypothesisMap* map,
            const RunControl& control) override {
     UseDevice();
-    tables_.problem.pattern = pattern;
+    SetPass(pass, pattern, &tables_);
     const PixelState state = Upload(*map, control.continues);
     const int num_steps = NumSteps(pass);
     int step = 0;

@@ -27,7 +27,7 @@ struct DeviceProblem {
   PatchShape shape;
   SamplingPattern pattern;
   const uint8_t* ref_grey;     // row-major, no padding
-  const float* color_weights;  // 256: exp(-d * shape.color_falloff)
+  const float* color_weights;  // 256: ColorWeight(shape, d)
   const ViewGeometry* views;
   const ViewWarp* to_src;  // for the geometric term
   const ViewWarp* to_ref;
@@ -37,18 +37,21 @@ struct DeviceProblem {
   float texture_scale;                 // grey levels per unit of a fetch
 };
 
-// The window of the reference image at a pixel, read once for all its costs.
-HPM_HD RefPatch RefPatchAt(const DeviceProblem& problem, int col, int row) {
+// Of the reference image, 0..255; clamps at the border.
+HPM_HD float GreyAt(const DeviceProblem& problem, int col, int row) {
   const int width = problem.params.ref.width;
   const int height = problem.params.ref.height;
+  const int c = col < 0 ? 0 : (col < width ? col : width - 1);
+  const int r = row < 0 ? 0 : (row < height ? row : height - 1);
+  return static_cast<float>(
+      problem.ref_grey[static_cast<size_t>(r) * width + c]);
+}
+
+// The window of the reference image at a pixel, read once for all its costs.
+HPM_HD RefPatch RefPatchAt(const DeviceProblem& problem, int col, int row) {
   return MakeRefPatch(
       problem.shape,
-      [&](int c, int r) {
-        c = c < 0 ? 0 : (c < width ? c : width - 1);
-        r = r < 0 ? 0 : (r < height ? r : height - 1);
-        return static_cast<float>(
-            problem.ref_grey[static_cast<size_t>(r) * width + c]);
-      },
+      [&](int c, int r) { return GreyAt(problem, c, r); },
       [&](float difference) {
         return problem.color_weights[static_cast<int>(difference)];
       },

@@ -2,19 +2,21 @@
 
 #include "src/engine/visit_params.h"
 
-#include <cmath>
-
 namespace hpm {
 
 ProblemTables MakeProblemTables(const ViewSet& views,
                                 const MethodParams& params) {
   ProblemTables tables = {};
-  tables.problem.params = MakeVisitParams(views, params);
-  tables.problem.shape = MakePatchShape(
-      params.patch_radius, params.sigma_spatial, params.sigma_color);
+  tables.visit = MakeVisitParams(views, params);
+  tables.method = params;
+  tables.problem.params = tables.visit;
+  tables.problem.shape = MakePatchShape(params.patch_radius,
+                                        params.sigma_spatial,
+                                        params.sigma_color,
+                                        params.cut_color);
   for (int i = 0; i < 256; ++i) {
     tables.color_weights.push_back(
-        std::exp(-static_cast<float>(i) * tables.problem.shape.color_falloff));
+        ColorWeight(tables.problem.shape, static_cast<float>(i)));
   }
   for (const View& src : views.srcs) {
     const ViewWarp warp = MakeViewWarp(views.ref.camera, src.camera);
@@ -34,6 +36,13 @@ ProblemTables MakeProblemTables(const ViewSet& views,
     tables.views.push_back(geometry);
   }
   return tables;
+}
+
+void SetPass(const Pass& pass,
+             const SamplingPattern& pattern,
+             ProblemTables* tables) {
+  tables->problem.params = ForPass(tables->visit, tables->method, pass);
+  tables->problem.pattern = pattern;
 }
 
 }  // namespace hpm

@@ -12,6 +12,8 @@ namespace hpm {
 
 struct ProblemTables {
   DeviceProblem problem;  // all pointers null
+  VisitParams visit;      // what SetPass() starts from
+  MethodParams method;
   std::vector<float> color_weights;
   std::vector<ViewGeometry> views;  // texels null
   std::vector<ViewWarp> to_src, to_ref;
@@ -20,5 +22,10 @@ struct ProblemTables {
 
 ProblemTables MakeProblemTables(const ViewSet& views,
                                 const MethodParams& params);
+
+// Makes `problem` that of a pass.
+void SetPass(const Pass& pass,
+             const SamplingPattern& pattern,
+             ProblemTables* tables);
 
 }  // namespace hpm

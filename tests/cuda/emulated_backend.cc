@@ -191,7 +191,7 @@ void EmulatedBackend::Run(const Pass& pass,
                           const SamplingPattern& pattern,
                           HypothesisMap* map,
                           const RunControl& control) {
-  tables_.problem.pattern = pattern;
+  SetPass(pass, pattern, &tables_);
   PixelState state = map->View();
   std::vector<Plane> priors;
   if (map->prior_level > 0) {
