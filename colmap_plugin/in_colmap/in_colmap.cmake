@@ -19,6 +19,8 @@ include_directories($<BUILD_INTERFACE:${HPM_MVS_DIR}>)
 
 set(HPM_TESTS OFF CACHE INTERNAL "")
 set(HPM_BENCH OFF CACHE INTERNAL "")
+# A language switched on in a subfolder does not reach the top of the build.
+set(HPM_CUDA OFF CACHE INTERNAL "")
 add_subdirectory(${HPM_MVS_DIR} ${CMAKE_BINARY_DIR}/hpm_mvs EXCLUDE_FROM_ALL)
 
 # COLMAP's library and this one need each other; static libraries may. Ours are linked
