@@ -82,6 +82,7 @@ def table(results):
     for scene, rows in results["scenes"].items():
         for method, row in rows.items():
             depth = row["depth"]
+            normal = depth["all"]["median_normal_error_deg"]  # None without truth
             within = [100 * share for share in depth["all"]["within"]]
             clouds = [row[key] for key in row if key.startswith("cloud_")]
             f1 = "; ".join(
@@ -94,7 +95,7 @@ def table(results):
                 f"| {scene} | {method} | {row['ncc_evaluations_per_pixel']:.0f} "
                 f"| {within[3]:.1f} | {within[4]:.1f} | {within[5]:.1f} "
                 f"| {100 * depth['low_texture']['within'][4]:.1f} "
-                f"| {depth['all']['median_normal_error_deg']:.1f} | {f1} |"
+                f"| {normal if normal is None else format(normal, '.1f')} | {f1} |"
             )
     return "\n".join(lines)
 
