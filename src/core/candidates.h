@@ -16,11 +16,13 @@ struct Candidates {
   uint32_t current;  // bit i: candidate i is nearly the current hypothesis
   int num_views;     // that were asked
   uint8_t view[kMaxViews];
+  float votes[kMaxViews];                 // of the neighbours for view[k]
   float matrix[kNumRegions * kMaxViews];  // [region * num_views + k]: view[k]
 };
 
 // Views worth asking: those that the pixel itself or its neighbours trusted,
-// and one more in turn, so that a view can come back.
+// and one more in turn, so that a view can come back; with the votes of the
+// neighbours.
 HPM_HD void ChooseViews(const VisitParams& params,
                         const SamplingPattern& pattern,
                         const PixelState& state,
@@ -29,6 +31,8 @@ HPM_HD void ChooseViews(const VisitParams& params,
                         int row,
                         Candidates* candidates) {
   uint32_t trusted = state.masks[row * state.width + col];
+  uint32_t masks[4];
+  int num_masks = 0;
   const int d = pattern.mask_distance;
   const int dcol[4] = {0, 0, -d, d};
   const int drow[4] = {-d, d, 0, 0};
@@ -36,15 +40,21 @@ HPM_HD void ChooseViews(const VisitParams& params,
     const int c = col + dcol[b];
     const int r = row + drow[b];
     if (c < 0 || r < 0 || c >= state.width || r >= state.height) continue;
-    trusted |= state.masks[r * state.width + c];
+    masks[num_masks] = state.masks[r * state.width + c];
+    trusted |= masks[num_masks++];
   }
   const int turn =
       static_cast<int>(draw * static_cast<float>(params.num_views));
   if (turn < params.num_views) trusted |= 1u << turn;
   candidates->num_views = 0;
   for (int j = 0; j < params.num_views; ++j) {
-    if (trusted >> j & 1)
-      candidates->view[candidates->num_views++] = static_cast<uint8_t>(j);
+    if (!(trusted >> j & 1)) continue;
+    float votes = 0;
+    for (int b = 0; b < num_masks; ++b) {
+      votes += (masks[b] >> j & 1) ? 0.9f : 0.1f;
+    }
+    candidates->votes[candidates->num_views] = votes;
+    candidates->view[candidates->num_views++] = static_cast<uint8_t>(j);
   }
 }
 

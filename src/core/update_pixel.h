@@ -8,37 +8,19 @@
 
 namespace hpm {
 
-// View probabilities from the candidates' votes and the masks of four
-// neighbours of the other colour.
+// Of the views that were asked, from the costs of the candidates and the votes
+// of the neighbours.
 HPM_HD void ViewProbabilities(const VisitParams& params,
-                              const SamplingPattern& pattern,
-                              const PixelState& state,
                               const Candidates& candidates,
                               int iteration,
-                              int col,
-                              int row,
                               float probability[kMaxViews]) {
   const float good_cost = GoodCost(iteration);
-  float neighbour_votes[kMaxViews];
-  for (int j = 0; j < candidates.num_views; ++j) neighbour_votes[j] = 0;
-  const int d = pattern.mask_distance;
-  const int dcol[4] = {0, 0, -d, d};
-  const int drow[4] = {-d, d, 0, 0};
-  for (int b = 0; b < 4; ++b) {
-    const int c = col + dcol[b];
-    const int r = row + drow[b];
-    if (c < 0 || r < 0 || c >= state.width || r >= state.height) continue;
-    const uint32_t mask = state.masks[r * state.width + c];
-    for (int j = 0; j < candidates.num_views; ++j) {
-      neighbour_votes[j] += (mask >> candidates.view[j] & 1) ? 0.9f : 0.1f;
-    }
-  }
   for (int j = 0; j < candidates.num_views; ++j) {
-    probability[j] = neighbour_votes[j] * ViewLikelihood(candidates.matrix,
-                                                         candidates.num_views,
-                                                         j,
-                                                         candidates.exists,
-                                                         good_cost);
+    probability[j] = candidates.votes[j] * ViewLikelihood(candidates.matrix,
+                                                          candidates.num_views,
+                                                          j,
+                                                          candidates.exists,
+                                                          good_cost);
   }
   KeepLargest(params.max_drawn_views, candidates.num_views, probability);
 }
@@ -146,8 +128,7 @@ HPM_HD void UpdatePixel(const VisitParams& params,
                     &candidates);
 
   float probability[kMaxViews];
-  ViewProbabilities(
-      params, pattern, state, candidates, iteration, col, row, probability);
+  ViewProbabilities(params, candidates, iteration, probability);
   const ViewWeights weights = DrawViews(probability,
                                         candidates.view,
                                         candidates.num_views,

@@ -276,6 +276,11 @@ TEST_F(CollectCandidatesTest, AsksTrustedViewsAndOneMoreInTurn) {
     std::sort(expected.begin(), expected.end());
     EXPECT_EQ(views, expected);
     for (int k = 0; k < candidates.num_views; ++k) {
+      // Three neighbours trust view 7, one view 2; the pixel has no vote.
+      const float votes = views[k] == 7 ? 2.8f : views[k] == 2 ? 1.2f : 0.4f;
+      EXPECT_FLOAT_EQ(candidates.votes[k], votes) << views[k];
+    }
+    for (int k = 0; k < candidates.num_views; ++k) {
       EXPECT_EQ(candidates.matrix[3 * candidates.num_views + k],
                 0.01f * static_cast<float>(views[k]));
     }
