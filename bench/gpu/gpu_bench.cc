@@ -5,7 +5,7 @@
 //       [--quick 1]
 #include "bench/gpu/json.h"
 #include "bench/gpu/sampler_rate.h"
-#include "bench/gpu/synthetic_views.h"
+#include "bench/synthetic_views.h"
 #include "cuda/cuda_backend.h"
 #include "cuda/cuda_devices.h"
 #include "cuda/self_test.h"

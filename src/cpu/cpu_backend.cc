@@ -160,9 +160,14 @@ class CpuBackend : public Backend {
 
 }  // namespace
 
+std::unique_ptr<Backend> MakeCpuBackend(const CpuTarget& target,
+                                        int num_threads) {
+  return std::make_unique<CpuBackend>(target, num_threads);
+}
+
 std::unique_ptr<Backend> MakeCpuBackend(const std::string& target,
                                         int num_threads) {
-  return std::make_unique<CpuBackend>(FindCpuTarget(target), num_threads);
+  return MakeCpuBackend(FindCpuTarget(target), num_threads);
 }
 
 }  // namespace hpm

@@ -1,6 +1,7 @@
 // The CPU backend: SIMD matching cost, threads over bands of rows.
 #pragma once
 
+#include "src/cpu/match_cost.h"
 #include "src/engine/backend.h"
 
 #include <memory>
@@ -8,7 +9,10 @@
 
 namespace hpm {
 
-// `target`: see FindCpuTarget; num_threads <= 0: all cores.
+// num_threads <= 0: all cores.
+std::unique_ptr<Backend> MakeCpuBackend(const CpuTarget& target,
+                                        int num_threads);
+// `target`: see FindCpuTarget.
 std::unique_ptr<Backend> MakeCpuBackend(const std::string& target,
                                         int num_threads);
 

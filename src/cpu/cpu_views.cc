@@ -8,6 +8,12 @@
 #include <limits>
 
 namespace hpm {
+namespace {
+
+// The middle of what unsigned 32-bit offsets reach, see MatchViews::origin.
+constexpr int64_t kTexelOrigin = int64_t{1} << 31;
+
+}  // namespace
 
 CpuViews::CpuViews(const ViewSet& views, const MethodParams& params)
     : match_() {
@@ -45,7 +51,7 @@ CpuViews::CpuViews(const ViewSet& views, const MethodParams& params)
                 "--PatchMatchStereo.max_image_size or fewer sources in "
                 "patch-match.cfg");
   }
-  texels_.resize(num_texels);
+  texels_.resize(num_texels + kTexelPadding);
   size_t offset = 0;
   for (const View& src : views.srcs) {
     const int j = match_.num_views++;
@@ -61,11 +67,13 @@ CpuViews::CpuViews(const ViewSet& views, const MethodParams& params)
     match_.v[2][j] = warp.v.z;
     match_.max_u[j] = static_cast<float>(src.image->width - 1);
     match_.max_v[j] = static_cast<float>(src.image->height - 1);
-    match_.stride[j] = src.image->width;
-    match_.offset[j] = static_cast<int32_t>(offset);
+    match_.stride[j] = static_cast<int32_t>(sizeof(Texel)) * src.image->width;
+    match_.offset[j] = static_cast<int32_t>(
+        static_cast<int64_t>(sizeof(Texel) * offset) - kTexelOrigin);
     offset += src.image->data.size();
   }
-  match_.texels = texels_.data();
+  match_.origin =
+      reinterpret_cast<const uint8_t*>(texels_.data()) + kTexelOrigin;
 }
 
 RefPatch CpuViews::PatchAt(int col, int row) const {
@@ -117,7 +125,7 @@ float CpuViews::GeometricError(const PlaneSlope& slope,
 
 uint64_t CpuViews::MemoryNeeded(int width, int height, int num_srcs) {
   const uint64_t pixels = static_cast<uint64_t>(width) * height;
-  return pixels * (sizeof(uint8_t) + sizeof(uint32_t) * num_srcs);
+  return pixels * (sizeof(uint8_t) + sizeof(Texel) * num_srcs);
 }
 
 }  // namespace hpm

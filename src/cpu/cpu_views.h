@@ -2,8 +2,10 @@
 // Cost object of a pixel visit (see src/core/visit.h).
 #pragma once
 
+#include "src/base/huge_pages.h"
 #include "src/core/geometric_term.h"
 #include "src/cpu/match_cost.h"
+#include "src/cpu/texel_image.h"
 #include "src/engine/pass.h"
 #include "src/engine/view.h"
 
@@ -42,7 +44,7 @@ class CpuViews {
   int padded_width_;
   std::vector<uint8_t> padded_ref_;
   float color_weights_[256];
-  std::vector<uint32_t> texels_;
+  std::vector<Texel, HugePageAllocator<Texel>> texels_;
   MatchViews match_;
   std::vector<ViewWarp> to_src_, to_ref_;
   std::vector<std::shared_ptr<const std::vector<float>>> inverse_depths_;

@@ -16,14 +16,16 @@ struct MatchViews {
   Camera ref;
   PatchShape shape;
   int num_views = 0;
-  const uint32_t* texels = nullptr;  // base of all images, see texel_image.h
+  // All images, see texel_image.h; signed 32-bit byte offsets from here reach
+  // 2^31 texels.
+  const uint8_t* origin = nullptr;
   // Per view; M and v of ViewWarp.
   alignas(64) float M[9][kMaxViews];
   alignas(64) float v[3][kMaxViews];
-  alignas(64) float max_u[kMaxViews];  // width - 1
-  alignas(64) float max_v[kMaxViews];  // height - 1
-  alignas(64) int32_t stride[kMaxViews];
-  alignas(64) int32_t offset[kMaxViews];  // of the image in `texels`, in texels
+  alignas(64) float max_u[kMaxViews];     // width - 1
+  alignas(64) float max_v[kMaxViews];     // height - 1
+  alignas(64) int32_t stride[kMaxViews];  // bytes from row to row
+  alignas(64) int32_t offset[kMaxViews];  // bytes from `origin` to the image
 };
 
 // Computes costs[i * num_src + k] of planes[i] in view views[k] at pixel (col,

@@ -1,5 +1,7 @@
 #include "src/cpu/match_cost_scalar.h"
 
+#include "src/cpu/texel_image.h"
+
 #include <cstddef>
 
 namespace hpm {
@@ -20,19 +22,18 @@ void ScalarMatchCosts(const MatchViews& match,
       ViewWarp warp;
       for (int i = 0; i < 9; ++i) warp.M.m[i] = match.M[i][view];
       warp.v = {match.v[0][view], match.v[1][view], match.v[2][view]};
-      const uint32_t* texels = match.texels + match.offset[view];
+      const uint8_t* image = match.origin + match.offset[view];
       const auto sample = [&](float u, float v) {
         const float cu = Clamp(u, 0.0f, match.max_u[view]);
         const float cv = Clamp(v, 0.0f, match.max_v[view]);
         const int iu = static_cast<int>(cu), iv = static_cast<int>(cv);
         const float fu = cu - static_cast<float>(iu),
                     fv = cv - static_cast<float>(iv);
-        const uint32_t texel =
-            texels[static_cast<size_t>(iv) * match.stride[view] + iu];
-        const float p00 = static_cast<float>(texel & 255),
-                    p01 = static_cast<float>(texel >> 8 & 255);
-        const float p10 = static_cast<float>(texel >> 16 & 255),
-                    p11 = static_cast<float>(texel >> 24);
+        const uint8_t* taps = image +
+                              static_cast<ptrdiff_t>(iv) * match.stride[view] +
+                              static_cast<ptrdiff_t>(sizeof(Texel)) * iu;
+        const float p00 = taps[0], p10 = taps[1];
+        const float p01 = taps[2], p11 = taps[3];
         const float top = p00 + fu * (p01 - p00),
                     bottom = p10 + fu * (p11 - p10);
         return top + fv * (bottom - top);

@@ -12,9 +12,6 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 using DF = hn::ScalableTag<float>;
-using DI = hn::RebindToSigned<DF>;
-using VF = hn::Vec<DF>;
-using VI = hn::Vec<DI>;
 
 // Room for the last, partly filled vector.
 constexpr int kMaxLanes = 16;
@@ -38,6 +35,43 @@ struct Chosen {
   alignas(64) float drow[3][kMaxViews + kMaxLanes];    // second column of M
   alignas(64) float v[3][kMaxViews + kMaxLanes];
 };
+
+// 1 / z[i] with a single division. Approximate reciprocals would be as fast,
+// but differ from one maker of processors to the other.
+template <class D, class V>
+HWY_INLINE void InvertThree(D df, V z[3]) {
+  const V z01 = hn::Mul(z[0], z[1]);
+  const V inverse = hn::Div(hn::Set(df, 1.0f), hn::Mul(z01, z[2]));
+  const V inverse01 = hn::Mul(inverse, z[2]);
+  z[2] = hn::Mul(inverse, z01);
+  const V z0 = z[0];
+  z[0] = hn::Mul(inverse01, z[1]);
+  z[1] = hn::Mul(inverse01, z0);
+}
+
+// hn::ConvertTo() to integers, which on x86 also repairs overflows; here they
+// cannot happen.
+#if HWY_ARCH_X86 && HWY_TARGET != HWY_SCALAR
+template <size_t N>
+HWY_INLINE hn::Vec128<int32_t, N> Truncate(hn::Vec128<float, N> v) {
+  return hn::Vec128<int32_t, N>{_mm_cvttps_epi32(v.raw)};
+}
+#if HWY_TARGET <= HWY_AVX2
+HWY_INLINE hn::Vec256<int32_t> Truncate(hn::Vec256<float> v) {
+  return hn::Vec256<int32_t>{_mm256_cvttps_epi32(v.raw)};
+}
+#endif
+#if HWY_TARGET <= HWY_AVX3
+HWY_INLINE hn::Vec512<int32_t> Truncate(hn::Vec512<float> v) {
+  return hn::Vec512<int32_t>{_mm512_cvttps_epi32(v.raw)};
+}
+#endif
+#else
+template <class V>
+HWY_INLINE auto Truncate(V v) {
+  return hn::ConvertTo(hn::RebindToSigned<hn::DFromV<V>>(), v);
+}
+#endif
 
 HWY_INLINE void FillPairs(const MatchViews& match,
                           float col,
@@ -71,13 +105,13 @@ HWY_INLINE void FillPairs(const MatchViews& match,
   // plane.
   for (int p = 0; p < num_planes; ++p) {
     const PlaneSlope m = SlopeOf(match.ref, planes[p]);
-    const VF m_col = hn::Set(df, m.col);
-    const VF m_row = hn::Set(df, m.row);
-    const VF m_here = hn::Set(df, m.col * col + m.row * row + m.constant);
+    const auto m_col = hn::Set(df, m.col);
+    const auto m_row = hn::Set(df, m.row);
+    const auto m_here = hn::Set(df, m.col * col + m.row * row + m.constant);
     for (int k = 0; k < num_views; k += lanes) {
       const int pair = p * num_views + k;
       for (int i = 0; i < 3; ++i) {
-        const VF v = hn::Load(df, chosen.v[i] + k);
+        const auto v = hn::Load(df, chosen.v[i] + k);
         hn::StoreU(hn::NegMulAdd(m_here, v, hn::Load(df, chosen.origin[i] + k)),
                    df,
                    pairs->origin[i] + pair);
@@ -93,12 +127,16 @@ HWY_INLINE void FillPairs(const MatchViews& match,
 }
 
 // Costs of one vector of pairs, from `first` on.
-HWY_INLINE VF PairCosts(const MatchViews& match,
+template <class D,
+          class VF = hn::Vec<D>,
+          class VI = hn::Vec<hn::RebindToSigned<D>>>
+HWY_INLINE VF PairCosts(D df,
+                        const MatchViews& match,
                         const RefPatch& patch,
                         const Pairs& pairs,
                         int first) {
-  const DF df;
-  const DI di;
+  const hn::RebindToSigned<D> di;
+  const hn::RebindToUnsigned<D> du;
   const VF zero = hn::Zero(df);
   const VF one = hn::Set(df, 1.0f);
   const VF half = hn::Set(df, 0.5f);
@@ -136,33 +174,44 @@ HWY_INLINE VF PairCosts(const MatchViews& match,
   }
 
   const VI byte = hn::Set(di, 255);
+  // Byte numbers for TableLookupBytesOr0: byte 1 or 2 of every lane, then
+  // zeros.
+  const VI first_byte =
+      hn::ShiftLeft<2>(hn::And(hn::Iota(di, 0), hn::Set(di, 3)));
+  const VI second = hn::Add(first_byte, hn::Set(di, 1 - 256));
+  const VI third = hn::Add(first_byte, hn::Set(di, 2 - 256));
   const VF center = hn::Set(df, patch.center);
-  const int32_t* texels = reinterpret_cast<const int32_t*>(match.texels);
+  const int32_t* texels = reinterpret_cast<const int32_t*>(match.origin);
   VF sum_s = zero, sum_ss = zero, sum_rs = zero;
   for (int j = 0; j < kPatchAxis; ++j) {
     const VF dj = hn::Set(df, static_cast<float>(match.shape.offset[j]));
     const VF row_x = hn::MulAdd(dj, drow[0], origin[0]);
     const VF row_y = hn::MulAdd(dj, drow[1], origin[1]);
     const VF row_z = hn::MulAdd(dj, drow[2], origin[2]);
+    VF inv_z[kPatchAxis];
     for (int i = 0; i < kPatchAxis; ++i) {
       const VF d = hn::Set(df, static_cast<float>(match.shape.offset[i]));
-      const VF inv_z = hn::Div(one, hn::MulAdd(d, dcol[2], row_z));
-      VF u = hn::Mul(hn::MulAdd(d, dcol[0], row_x), inv_z);
-      VF v = hn::Mul(hn::MulAdd(d, dcol[1], row_y), inv_z);
+      inv_z[i] = hn::MulAdd(d, dcol[2], row_z);
+    }
+    for (int i = 0; i < kPatchAxis; i += 3) InvertThree(df, inv_z + i);
+    for (int i = 0; i < kPatchAxis; ++i) {
+      const VF d = hn::Set(df, static_cast<float>(match.shape.offset[i]));
+      VF u = hn::Mul(hn::MulAdd(d, dcol[0], row_x), inv_z[i]);
+      VF v = hn::Mul(hn::MulAdd(d, dcol[1], row_y), inv_z[i]);
       u = hn::Min(hn::Max(u, zero), max_u);
       v = hn::Min(hn::Max(v, zero), max_v);
-      const VI iu = hn::ConvertTo(di, u);
-      const VI iv = hn::ConvertTo(di, v);
+      const VI iu = Truncate(u);
+      const VI iv = Truncate(v);
       const VF fu = hn::Sub(u, hn::ConvertTo(df, iu));
       const VF fv = hn::Sub(v, hn::ConvertTo(df, iv));
-      const VI index = hn::Add(hn::Add(hn::Mul(iv, stride), iu), offset);
-      const VI texel = hn::GatherIndex(di, texels, index);
+      const VI index =
+          hn::Add(hn::Add(hn::Mul(iv, stride), hn::Add(iu, iu)), offset);
+      const VI texel = hn::GatherOffset(di, texels, index);
       const VF p00 = hn::ConvertTo(df, hn::And(texel, byte));
-      const VF p01 = hn::ConvertTo(df, hn::And(hn::ShiftRight<8>(texel), byte));
-      const VF p10 =
-          hn::ConvertTo(df, hn::And(hn::ShiftRight<16>(texel), byte));
-      const VF p11 =
-          hn::ConvertTo(df, hn::And(hn::ShiftRight<24>(texel), byte));
+      const VF p10 = hn::ConvertTo(df, hn::TableLookupBytesOr0(texel, second));
+      const VF p01 = hn::ConvertTo(df, hn::TableLookupBytesOr0(texel, third));
+      const VF p11 = hn::ConvertTo(
+          df, hn::BitCast(di, hn::ShiftRight<24>(hn::BitCast(du, texel))));
       const VF top = hn::MulAdd(fu, hn::Sub(p01, p00), p00);
       const VF bottom = hn::MulAdd(fu, hn::Sub(p11, p10), p10);
       const VF s = hn::Sub(hn::MulAdd(fv, hn::Sub(bottom, top), top), center);
@@ -182,6 +231,36 @@ HWY_INLINE VF PairCosts(const MatchViews& match,
       hn::Min(hn::Max(hn::Sub(one, hn::Div(covariance, scale)), zero), worst);
   return hn::IfThenElse(
       hn::And(visible, hn::Ge(variance, min_variance)), cost, worst);
+}
+
+// Costs of the pairs from `first` on. What is left at the end goes through
+// shorter vectors.
+template <class D>
+HWY_INLINE void CostsFrom(D df,
+                          const MatchViews& match,
+                          const RefPatch& patch,
+                          const Pairs& pairs,
+                          int first,
+                          int num_pairs,
+                          float* costs) {
+  const int lanes = static_cast<int>(hn::Lanes(df));
+  for (; first < num_pairs; first += lanes) {
+    const int left = num_pairs - first;
+    if constexpr (hn::MaxLanes(D()) > 4) {
+      if (left <= lanes / 2) {
+        CostsFrom(hn::Half<D>(), match, patch, pairs, first, num_pairs, costs);
+        return;
+      }
+    }
+    const auto cost = PairCosts(df, match, patch, pairs, first);
+    if (left >= lanes) {
+      hn::StoreU(cost, df, costs + first);
+    } else {
+      alignas(64) float last[kMaxLanes];
+      hn::Store(cost, df, last);
+      for (int i = 0; i < left; ++i) costs[first + i] = last[i];
+    }
+  }
 }
 
 void MatchCosts(const MatchViews& match,
@@ -214,18 +293,10 @@ void MatchCosts(const MatchViews& match,
     pairs.origin[2][pair] = -1;
     pairs.dcol[2][pair] = pairs.drow[2][pair] = 0;
     pairs.max_u[pair] = pairs.max_v[pair] = 0;
-    pairs.stride[pair] = pairs.offset[pair] = 0;
+    pairs.stride[pair] = 0;
+    pairs.offset[pair] = match.offset[0];
   }
-  alignas(64) float last[kMaxLanes];
-  for (int first = 0; first < num_pairs; first += lanes) {
-    const VF cost = PairCosts(match, patch, pairs, first);
-    if (first + lanes <= num_pairs) {
-      hn::StoreU(cost, df, costs + first);
-    } else {
-      hn::Store(cost, df, last);
-      for (int i = first; i < num_pairs; ++i) costs[i] = last[i - first];
-    }
-  }
+  CostsFrom(df, match, patch, pairs, 0, num_pairs, costs);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -1,6 +1,6 @@
-// Source images as the CPU's matching cost reads them: one 32-bit texel per
-// pixel holds the 2x2 neighbourhood, so that one gather fetches all four taps
-// of a bilinear look-up.
+// Source images as the CPU's matching cost reads them: a texel holds a pixel
+// and the one below, so that 32 bits from a texel on are the 2x2 neighbourhood
+// and one gather fetches all four taps of a bilinear look-up.
 #pragma once
 
 #include "src/image/gray_image.h"
@@ -10,9 +10,14 @@
 
 namespace hpm {
 
-// Byte 0: (col, row), 1: (col + 1, row), 2: (col, row + 1), 3: (col + 1, row +
-// 1), clamped at the right and lower border. `texels` has width * height
-// entries.
-void PackTexels(const GrayImage& image, uint32_t* texels);
+using Texel = uint16_t;
+
+// Texels behind the last image that a look-up may touch.
+constexpr size_t kTexelPadding = 1;
+
+// Low byte: (col, row), high byte: (col, row + 1), clamped at the lower border.
+// `texels` has width * height entries. At the right border the right half of a
+// look-up is the next row's; it has no weight there.
+void PackTexels(const GrayImage& image, Texel* texels);
 
 }  // namespace hpm

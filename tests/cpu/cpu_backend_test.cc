@@ -118,7 +118,7 @@ TEST_F(CpuBackendTest, MemoryNeededCoversTheImagesAndTheState) {
   const auto backend = MakeCpuBackend("scalar", 1);
   const uint64_t pixels = 1000 * 1000;
   // At least a texel per source pixel, and plane, cost and mask per pixel.
-  EXPECT_GE(backend->MemoryNeeded(1000, 1000, 10), pixels * (40 + 24));
+  EXPECT_GE(backend->MemoryNeeded(1000, 1000, 10), pixels * (20 + 24));
   EXPECT_GT(backend->MemoryNeeded(40000, 30000, 1), 1ull << 32);
 }
 

@@ -1,7 +1,6 @@
 // The card's form of the matching cost against the one of src/core.
 #include "cuda/direct_cost.h"
 #include "cuda/texel_image.h"
-#include "src/cpu/texel_image.h"
 #include "tests/cpu/scene_views.h"
 #include "tests/cuda/emulated_backend.h"
 
@@ -96,16 +95,20 @@ TEST_P(EveryScene, TheTextureUnitsFractionsMoveCostsLittle) {
   EXPECT_LE(d.num_visibility_differs, d.num_pairs / 2000);
 }
 
-TEST(TexelImage, IsThatOfTheCpu) {
+TEST(TexelImage, HoldsTheTwoByTwoNeighbourhoodClampedAtTheBorder) {
   GrayImage image{7, 5, {}};
   std::mt19937 random(3);
   for (int i = 0; i < 35; ++i) {
     image.data.push_back(static_cast<uint8_t>(random()));
   }
-  std::vector<uint32_t> expected(35);
-  PackTexels(image, expected.data());
   for (int i = 0; i < 35; ++i) {
-    EXPECT_EQ(TexelAt(image.data.data(), 7, 5, i % 7, i / 7), expected[i]);
+    const int col = i % 7, row = i / 7;
+    const int right = std::min(col + 1, 6), below = std::min(row + 1, 4);
+    const uint32_t texel = TexelAt(image.data.data(), 7, 5, col, row);
+    EXPECT_EQ(ByteOf(texel, 0), image.at(col, row));
+    EXPECT_EQ(ByteOf(texel, 1), image.at(right, row));
+    EXPECT_EQ(ByteOf(texel, 2), image.at(col, below));
+    EXPECT_EQ(ByteOf(texel, 3), image.at(right, below));
   }
 }
 

@@ -50,7 +50,7 @@ fresh in_place
 "$colmap" patch_match_stereo --workspace_path "$work/in_place" "${options[@]}" >"$work/in_place.log"
 same_maps "$work/direct" "$work/in_place"
 "$colmap" stereo_fusion --workspace_path "$work/in_place" --output_path "$work/fused.ply" >"$work/fusion.log"
-points=$(sed -an 's/^element vertex //p' "$work/fused.ply")
+points=$(LC_ALL=C sed -n 's/^element vertex //p' "$work/fused.ply")
 ((points > 2000)) || fail "only $points fused points"
 echo "ok: $points points"
 
@@ -81,7 +81,7 @@ cp "$work"/auto/dense/0/stereo/*.cfg "$work/expected/stereo"
   --PatchMatchStereo.max_image_size 1000 --PatchMatchStereo.window_radius 4 \
   --PatchMatchStereo.num_samples 7 --PatchMatchStereo.geom_consistency 0 >"$work/expected.log"
 same_maps "$work/auto/dense/0" "$work/expected"
-points=$(sed -an 's/^element vertex //p' "$work/auto/dense/0/fused.ply")
+points=$(LC_ALL=C sed -n 's/^element vertex //p' "$work/auto/dense/0/fused.ply")
 ((points > 5000)) || fail "automatic_reconstructor fused only $points points"
 [[ -s $work/auto/dense/0/meshed-poisson.ply ]] || fail "automatic_reconstructor made no mesh"
 echo "ok: automatic_reconstructor made $points points and a mesh"

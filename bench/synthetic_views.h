@@ -1,4 +1,4 @@
-// A closed-form scene as problems for the GPU benchmark, rendered in parallel.
+// A closed-form scene as problems for the benchmarks, rendered in parallel.
 #pragma once
 
 #include "src/engine/view.h"
