@@ -186,9 +186,6 @@ class PooledCost {
     num_evaluations_ += num_planes * num_views;
   }
 
-  HPM_HD_MEMBER float Grey(int col, int row) const {
-    return GreyAt(problem_, col, row);
-  }
   HPM_HD_MEMBER bool HasDepth(int view) const {
     return HasDepthMap(problem_, view);
   }

@@ -16,7 +16,6 @@ MethodParams MakeMethodParams(const ControllerOptions& options) {
   params.geom_max_error = static_cast<float>(options.hpm.geom_max_error);
   params.max_drawn_views = options.hpm.max_views;
   params.region_max_gradient = static_cast<float>(options.hpm.weak_gradient);
-  params.smoothness_weight = static_cast<float>(options.hpm.smoothness);
   return params;
 }
 

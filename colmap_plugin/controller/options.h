@@ -54,7 +54,6 @@ struct HpmOptions {
   int max_views = 4;              // source views that judge a pixel in a visit
   std::string prior = "regions";  // of hpm: regions, or the paper's triangles
   double weak_gradient = 2;       // grey levels per pixel
-  double smoothness = 0.4;        // weight in geometric passes; 0: off
   double geom_weight = 0.1;       // lambda of the geometric term
   double geom_max_error = 5;      // pixels, cap of the geometric term
   int num_levels = -1;     // levels of the prior hierarchy; -1: by image size

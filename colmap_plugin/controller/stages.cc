@@ -102,7 +102,6 @@ std::string OwnFingerprint(const Workspace& workspace,
   }
   if (stage.spec.geometric) {
     hash.AddDouble(params.geom_weight).AddDouble(params.geom_max_error);
-    hash.AddDouble(params.smoothness_weight);
     hash.AddDouble(params.region_max_gradient);
   }
   if (stage.is_final) AddFilter(options.patch_match, &hash);

@@ -185,8 +185,6 @@ std::vector<OptionSpec> MakeTable() {
           "every level; or the paper's triangles of credible points"),
       Hpm(kExpert, "weak_gradient", &H::weak_gradient, AtLeast(0),
           "Grey levels per pixel under which a region counts as untextured"),
-      Hpm(kExpert, "smoothness", &H::smoothness, AtLeast(0),
-          "Cost in geometric passes of a plane that its neighbourhood does not continue; 0: off"),
       Hpm(kExpert, "geom_weight", &H::geom_weight, AtLeast(0),
           "Weight of the geometric term per pixel of reprojection error"),
       Hpm(kExpert, "geom_max_error", &H::geom_max_error, AtLeast(0),

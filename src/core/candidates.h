@@ -20,9 +20,9 @@ struct Candidates {
   float matrix[kNumRegions * kMaxViews];  // [region * num_views + k]: view[k]
 };
 
-// Views worth asking: those that the pixel itself or its neighbours trusted,
-// and one more in turn, so that a view can come back; with the votes of the
-// neighbours.
+// Views worth asking: those that two of the pixel and its neighbours trusted,
+// or the pixel itself, and one more in turn, so that a view can come back; with
+// the votes of the neighbours.
 HPM_HD void ChooseViews(const VisitParams& params,
                         const SamplingPattern& pattern,
                         const PixelState& state,
@@ -31,6 +31,7 @@ HPM_HD void ChooseViews(const VisitParams& params,
                         int row,
                         Candidates* candidates) {
   uint32_t trusted = state.masks[row * state.width + col];
+  uint32_t once = trusted;
   uint32_t masks[4];
   int num_masks = 0;
   const int d = pattern.mask_distance;
@@ -41,7 +42,8 @@ HPM_HD void ChooseViews(const VisitParams& params,
     const int r = row + drow[b];
     if (c < 0 || r < 0 || c >= state.width || r >= state.height) continue;
     masks[num_masks] = state.masks[r * state.width + c];
-    trusted |= masks[num_masks++];
+    trusted |= once & masks[num_masks];
+    once |= masks[num_masks++];
   }
   const int turn =
       static_cast<int>(draw * static_cast<float>(params.num_views));
@@ -91,7 +93,10 @@ HPM_HD int BestSample(const SamplingPattern& pattern,
     const int r = row + pattern.drow[region][k];
     // The V of the local pattern alternates between its arms: one of them may
     // leave the image before the other.
-    if (c < 0 || r < 0 || c >= state.width || r >= state.height) continue;
+    if (static_cast<unsigned>(c) >= static_cast<unsigned>(state.width) ||
+        static_cast<unsigned>(r) >= static_cast<unsigned>(state.height)) {
+      continue;
+    }
     const int at = r * state.width + c;
     if (state.costs[at] < *best_cost) {
       *best_cost = state.costs[at];

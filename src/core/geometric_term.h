@@ -64,8 +64,8 @@ HPM_HD float InterpolateInverseDepth(
   const float fv = cv - static_cast<float>(row);
   const float a = at(col, row), b = at(col1, row), c = at(col, row1),
               d = at(col1, row1);
-  const float lo = fminf(fminf(a, b), fminf(c, d));
-  const float hi = fmaxf(fmaxf(a, b), fmaxf(c, d));
+  const float lo = Smaller(Smaller(a, b), Smaller(c, d));
+  const float hi = Larger(Larger(a, b), Larger(c, d));
   if (lo > 0 && hi - lo <= kSameSurface * hi) {
     const float top = a + fu * (b - a);
     const float bottom = c + fu * (d - c);

@@ -70,7 +70,7 @@ HPM_HD void InitializePixel(const VisitParams& params,
     plane.distance = -rng->Uniform(params.depth_min, params.depth_max) *
                      Dot(plane.normal, ray);
   }
-  uint8_t views[kMaxViews];
+  uint8_t views[kMaxViews] = {};
   for (int j = 0; j < params.num_views; ++j) views[j] = static_cast<uint8_t>(j);
   float costs[kMaxViews];
   cost.Photometric(&plane, 1, views, params.num_views, costs);

@@ -16,7 +16,7 @@ constexpr int kFirstNear = 3;  // from here on they lie near the current one
 HPM_HD Vec3f RandomNormal(const Vec3f& ray, Rng* rng) {
   const float z = rng->Uniform(-1.0f, 1.0f);
   const float phi = rng->Uniform(0.0f, 6.28318531f);
-  const float s = sqrtf(fmaxf(0.0f, 1.0f - z * z));
+  const float s = sqrtf(Larger(0.0f, 1.0f - z * z));
   const Vec3f n = {s * cosf(phi), s * sinf(phi), z};
   return Dot(n, ray) > 0 ? -n : n;
 }

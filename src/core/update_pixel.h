@@ -4,7 +4,6 @@
 
 #include "src/core/candidates.h"
 #include "src/core/refinement.h"
-#include "src/core/smoothness.h"
 
 namespace hpm {
 
@@ -40,17 +39,6 @@ struct Ranking {
         params->prior_term, cost, depth, normal, prior_depth, prior_normal);
   }
 };
-
-// What a plane costs beside matching, never negative.
-template <class Cost>
-HPM_HD float AddedCost(const VisitParams& params,
-                       const Cost& cost,
-                       const ViewWeights& weights,
-                       const Surroundings& around,
-                       const Plane& plane) {
-  return GeometricCost(params, cost, weights, plane) +
-         SmoothnessCost(params, around, plane);
-}
 
 // New hypotheses for the pixel at (x, y) whose plane is `best`; returns their
 // number. `prior` may be null.
@@ -114,8 +102,6 @@ HPM_HD void UpdatePixel(const VisitParams& params,
   const float y = static_cast<float>(row);
   const Vec3f ray = RayAt(params.ref, x, y);
 
-  Surroundings around;
-  CollectSurroundings(params, state, cost, col, row, &around);
   Candidates candidates;
   CollectCandidates(params,
                     pattern,
@@ -152,7 +138,7 @@ HPM_HD void UpdatePixel(const VisitParams& params,
   } else {
     PhotometricCosts(cost, weights, &best, 1, &best_cost);
   }
-  best_cost += AddedCost(params, cost, weights, around, best);
+  best_cost += GeometricCost(params, cost, weights, best);
   float best_rank =
       rank(best_cost, -best.distance / Dot(best.normal, ray), best.normal);
   bool propagated = false;
@@ -165,9 +151,9 @@ HPM_HD void UpdatePixel(const VisitParams& params,
     if (!(z >= params.depth_min && z <= params.depth_max)) continue;
     float candidate_cost = WeightedMean(
         weights, &candidates.matrix[i * candidates.num_views], true);
-    // What is added is never negative.
+    // The geometric cost is never negative.
     if (!(rank(candidate_cost, z, plane.normal) > best_rank)) continue;
-    candidate_cost += AddedCost(params, cost, weights, around, plane);
+    candidate_cost += GeometricCost(params, cost, weights, plane);
     const float candidate_rank = rank(candidate_cost, z, plane.normal);
     if (candidate_rank > best_rank) {
       best = plane;
@@ -192,7 +178,7 @@ HPM_HD void UpdatePixel(const VisitParams& params,
     const float z = -refined[i].distance / Dot(refined[i].normal, ray);
     if (!(z >= params.depth_min && z <= params.depth_max)) continue;
     if (!(rank(refined_cost[i], z, refined[i].normal) > best_rank)) continue;
-    refined_cost[i] += AddedCost(params, cost, weights, around, refined[i]);
+    refined_cost[i] += GeometricCost(params, cost, weights, refined[i]);
     const float refined_rank = rank(refined_cost[i], z, refined[i].normal);
     if (refined_rank > best_rank) {
       best = refined[i];

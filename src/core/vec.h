@@ -55,6 +55,9 @@ HPM_HD Mat3f Transposed(const Mat3f& a) {
       {a.m[0], a.m[3], a.m[6], a.m[1], a.m[4], a.m[7], a.m[2], a.m[5], a.m[8]}};
 }
 
+// As fminf and fmaxf for numbers, without their care for NaN and their call.
+HPM_HD float Smaller(float a, float b) { return a < b ? a : b; }
+HPM_HD float Larger(float a, float b) { return a > b ? a : b; }
 HPM_HD float Clamp(float v, float lo, float hi) {
   return v < lo ? lo : (v > hi ? hi : v);
 }

@@ -7,8 +7,6 @@
 //     a batch, so that the backend can fill its lanes;
 //   bool HasDepth(int view) const;
 //     whether the view has a depth map (geometric passes only);
-//   float Grey(int col, int row) const;
-//     grey value of the reference image, 0..255;
 //   float GeometricError(const Plane& plane, int view) const;
 //     reprojection error in pixels, capped (geometric passes only).
 #pragma once
@@ -21,13 +19,6 @@
 #include <stdint.h>
 
 namespace hpm {
-
-struct SmoothnessTerm {
-  float weight;       // cost of a plane that no neighbour continues; 0: off
-  float max_error;    // pixels of parallax; beyond it a neighbour is another
-                      // surface
-  float sigma_color;  // grey levels
-};
 
 struct VisitParams {
   Camera ref;
@@ -44,7 +35,6 @@ struct VisitParams {
   bool geometric;    // add the geometric term
   GeometricTerm geometric_term;
   PriorTerm prior_term;
-  SmoothnessTerm smoothness;
   int max_drawn_views;  // see KeepLargest()
   // Refinement without hypotheses from the whole depth range.
   bool search_near;

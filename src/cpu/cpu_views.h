@@ -25,10 +25,6 @@ class CpuViews {
 
   bool HasDepth(int view) const { return inverse_depths_[view] != nullptr; }
 
-  float Grey(int col, int row) const {
-    return padded_ref_[static_cast<size_t>(row + padding_) * padded_width_ +
-                       col + padding_];
-  }
   RefPatch PatchAt(int col, int row) const;
   float GeometricError(const PlaneSlope& slope,
                        int view,
@@ -83,7 +79,6 @@ class CpuPixelCost {
   }
 
   bool HasDepth(int view) const { return views_.HasDepth(view); }
-  float Grey(int col, int row) const { return views_.Grey(col, row); }
 
   float GeometricError(const Plane& plane, int view) const {
     return views_.GeometricError(SlopeOf(views_.match().ref, plane),

@@ -26,10 +26,6 @@ struct MethodParams {
   float prior_depth_share =
       1.0f / 64;                   // sigma of the prior's depth / depth range
   float prior_angle = 0.0872665f;  // radians
-  // Smoothness in geometric passes (src/core/smoothness.h).
-  float smoothness_weight = 0.4f;
-  float smoothness_max_error = 1;     // pixels
-  float smoothness_sigma_color = 10;  // grey levels
   // Planes of regions without texture (src/prior/region_planes.h).
   float region_max_gradient = 2;     // grey levels per pixel
   float region_min_share = 0.005f;   // of the image

@@ -3,6 +3,8 @@
 #include "src/base/error.h"
 #include "src/core/sampling_pattern.h"
 
+#include <algorithm>
+
 namespace hpm {
 namespace {
 
@@ -120,14 +122,16 @@ void AddStages(const Method& method,
 void AddRegionStages(const Method& method,
                      const ScheduleOptions& options,
                      StageList* list) {
-  const int num_geom_passes = method.priors == Priors::kCoarsest
-                                  ? (options.num_geom_passes + 1) / 2
-                                  : options.num_geom_passes;
+  const bool fast = method.priors == Priors::kCoarsest;
+  const int num_geom_passes =
+      fast ? (options.num_geom_passes + 1) / 2 : options.num_geom_passes;
+  const int num_iterations =
+      fast ? std::max(1, options.num_iterations - 1) : options.num_iterations;
   const int coarsest = options.num_levels - 1;
   for (int level = coarsest; level >= 0; --level) {
     const bool is_coarsest = level == coarsest;
     list->AddPhotometric(
-        level, !is_coarsest, is_coarsest ? options.num_iterations : 1, {});
+        level, !is_coarsest, is_coarsest ? num_iterations : 1, {});
     for (int i = 0; i < num_geom_passes; ++i) {
       const bool last = level == 0 && i + 1 == num_geom_passes;
       list->AddGeometric(level,

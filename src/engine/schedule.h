@@ -13,11 +13,12 @@ struct ScheduleOptions {
   std::string method = "hpm";
   int num_iterations = 3;       // of basic and prior passes
   int num_geom_iterations = 2;  // of geometric passes
-  int num_geom_passes = 2;      // 0: photometric only; hpm_fast takes half
+  int num_geom_passes = 2;      // 0: photometric only
   int num_levels = 1;           // of the prior hierarchy or the image pyramid
   // hpm and hpm_fast mine planes of regions (src/engine/mine_regions.h) at
-  // every level of the images; else triangles of credible points as the paper
-  // does.
+  // every level of the images, hpm_fast with half the geometric passes and one
+  // iteration less at the coarsest; else triangles of credible points as the
+  // paper does.
   bool region_priors = true;
 };
 

@@ -33,9 +33,6 @@ VisitParams MakeVisitParams(const ViewSet& views, const MethodParams& params) {
       params.prior_beta,
       params.prior_depth_share * (views.depth_max - views.depth_min),
       params.prior_angle};
-  visit.smoothness = {params.smoothness_weight,
-                      params.smoothness_max_error,
-                      params.smoothness_sigma_color};
   return visit;
 }
 
@@ -44,8 +41,6 @@ VisitParams ForPass(VisitParams visit,
                     const Pass& pass) {
   visit.geometric = pass.kind == PassKind::kGeometric;
   visit.search_near = visit.geometric;
-  // Smoothing before the views have been compared fixes mistakes in place.
-  if (!visit.geometric) visit.smoothness.weight = 0;
   if (pass.regions == RegionPriors::kStrong)
     visit.prior_term.gamma = params.region_gamma;
   return visit;

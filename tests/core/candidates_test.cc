@@ -258,13 +258,15 @@ TEST_F(CollectCandidatesTest, NearlyEqualCandidatesShareOneRowOfCosts) {
   }
 }
 
-// Views that no neighbour trusts cost time, and with them come the occlusions.
+// Views that hardly a neighbour trusts cost time, and with them come the
+// occlusions.
 TEST_F(CollectCandidatesTest, AsksTrustedViewsAndOneMoreInTurn) {
   params_.num_views = 8;
   masks_.assign(masks_.size(), 0b10000000);
   masks_[Index(kMiddle, kMiddle)] = 0b10;
   const int d = MakeSamplingPattern(true, false).mask_distance;
-  masks_[Index(kMiddle - d, kMiddle)] = 0b100;
+  masks_[Index(kMiddle - d, kMiddle)] = 0b1100;
+  masks_[Index(kMiddle + d, kMiddle)] = 0b100;
   const FakeCost cost = {
       [](const Plane&, int view) { return 0.01f * static_cast<float>(view); }};
   for (const int turn : {0, 5}) {
@@ -276,8 +278,8 @@ TEST_F(CollectCandidatesTest, AsksTrustedViewsAndOneMoreInTurn) {
     std::sort(expected.begin(), expected.end());
     EXPECT_EQ(views, expected);
     for (int k = 0; k < candidates.num_views; ++k) {
-      // Three neighbours trust view 7, one view 2; the pixel has no vote.
-      const float votes = views[k] == 7 ? 2.8f : views[k] == 2 ? 1.2f : 0.4f;
+      // Two neighbours trust views 2 and 7, one view 3; the pixel has no vote.
+      const float votes = views[k] == 7 || views[k] == 2 ? 2.0f : 0.4f;
       EXPECT_FLOAT_EQ(candidates.votes[k], votes) << views[k];
     }
     for (int k = 0; k < candidates.num_views; ++k) {

@@ -62,10 +62,6 @@ struct DeviceCost {
     }
   }
 
-  __device__ float Grey(int x, int y) const {
-    return static_cast<float>(views.ref_image[y * views.ref.width + x]);
-  }
-
   __device__ bool HasDepth(int view) const {
     return views.inverse_depths[view] != nullptr;
   }

@@ -13,7 +13,6 @@ struct FakeCost {
       [](const Plane&, int) { return 0.0f; };
   uint32_t without_depth = 0;  // bit j: view j has no depth map
   mutable int num_evaluations = 0;
-  std::function<float(int col, int row)> grey = [](int, int) { return 100.0f; };
 
   void Photometric(const Plane* planes,
                    int num_planes,
@@ -28,7 +27,6 @@ struct FakeCost {
     num_evaluations += num_planes * num_views;
   }
   bool HasDepth(int view) const { return (without_depth >> view & 1) == 0; }
-  float Grey(int col, int row) const { return grey(col, row); }
   float GeometricError(const Plane& plane, int view) const {
     return geometric(plane, view);
   }

@@ -145,12 +145,19 @@ TEST(Schedule, OnlyTheLastPassHasStrongRegionPriors) {
   }
 }
 
-TEST(Schedule, HpmFastTakesHalfTheGeometricPasses) {
+TEST(Schedule, HpmFastTakesFewerPassesAndIterations) {
   const auto num_stages = [](const std::string& method) {
     return MakeSchedule(Options(method)).stages.size();
   };
   EXPECT_EQ(num_stages("hpm"), 9u);  // three levels
   EXPECT_EQ(num_stages("hpm_fast"), 6u);
+  const auto num_iterations = [](const std::string& method) {
+    return MakeSchedule(Options(method))
+        .stages.front()
+        .passes.front()
+        .num_iterations;
+  };
+  EXPECT_EQ(num_iterations("hpm_fast"), num_iterations("hpm") - 1);
 }
 
 TEST(Schedule, NespHasNoPriors) {

@@ -255,7 +255,6 @@ TEST_F(StagePlanTest, EachOptionChangesTheFingerprintsItConcerns) {
   EXPECT_EQ(ChangedBy([&] { hpm.geom_weight = 0.2; }), geometric);
   EXPECT_EQ(ChangedBy([&] { hpm.geom_max_error = 3; }), geometric);
   EXPECT_EQ(ChangedBy([&] { hpm.max_views = 3; }), all);
-  EXPECT_EQ(ChangedBy([&] { hpm.smoothness = 0.1; }), geometric);
   EXPECT_EQ(ChangedBy([&] { hpm.weak_gradient = 0; }), geometric);
   EXPECT_EQ(ChangedBy([&] { options_.random_seed = 5; }), all);
   EXPECT_EQ(ChangedBy([&] { colmap.window_radius = 4; }), all);

@@ -132,7 +132,6 @@ TEST(OptionTableTest, EveryMemberOfHpmOptionsIsAnOption) {
                max_views,
                prior,
                weak_gradient,
-               smoothness,
                geom_weight,
                geom_max_error,
                num_levels,
@@ -143,14 +142,12 @@ TEST(OptionTableTest, EveryMemberOfHpmOptionsIsAnOption) {
   (void)num_geom_passes, (void)geom_weight, (void)geom_max_error,
       (void)num_levels;
   (void)previews, (void)overwrite;
-  (void)quality, (void)prior, (void)max_views, (void)weak_gradient,
-      (void)smoothness;
+  (void)quality, (void)prior, (void)max_views, (void)weak_gradient;
   for (const char* name : {"method",
                            "quality",
                            "max_views",
                            "prior",
                            "weak_gradient",
-                           "smoothness",
                            "device",
                            "gpu_images",
                            "cpu_target",
@@ -270,7 +267,6 @@ const std::vector<Values>& ValueTable() {
        {"none", ""},
        "regions, triangles"},
       {"Hpm.weak_gradient", {"0", "2.5"}, {"-1"}, ">= 0"},
-      {"Hpm.smoothness", {"0", "0.4"}, {"-0.1"}, ">= 0"},
       {"Hpm.geom_max_error", {"0", "5"}, {"-1"}, ">= 0"},
       {"Hpm.num_levels", {"-1", "8"}, {"-2", "9", "1.5"}, "-1 to 8"},
       bools("Hpm.previews"),
