@@ -2,6 +2,8 @@
 # Installs everything that hpm_mvs needs to build, test and run its demo on
 # Debian 12 or Ubuntu. Works as root and with sudo, does nothing when all is there.
 #   --colmap  also what COLMAP itself is built with, for the tests of patches/
+#   --arm64   also what cross-compiles for ARM and runs it, for tests/arm; exit code 77
+#             when the arm64 libraries cannot be had
 #   --check   installs nothing; exit code 1 when something is missing
 set -euo pipefail
 
@@ -20,7 +22,7 @@ PACKAGES=(
   libfmt-dev
   nlohmann-json3-dev
   # tests, format, lint
-  libgtest-dev libbenchmark-dev
+  libgtest-dev libgmock-dev libbenchmark-dev
   clang-format clang-tidy
   python3 python3-venv
   # the program whose step we replace; it also runs in the tests
@@ -33,14 +35,25 @@ COLMAP_PACKAGES=(
   libglew-dev libgl-dev qtbase5-dev libqt5opengl5-dev
 )
 
+# The emulator without the package that would let the kernel start it on its own.
+ARM64_PACKAGES=(g++-aarch64-linux-gnu qemu-user)
+
+arm64=0
 check=0
 for argument in "$@"; do
   case $argument in
     --colmap) PACKAGES+=("${COLMAP_PACKAGES[@]}") ;;
+    --arm64) arm64=1; PACKAGES+=("${ARM64_PACKAGES[@]}") ;;
     --check) check=1 ;;
-    *) echo "usage: scripts/install_dependencies.sh [--colmap] [--check]" >&2; exit 2 ;;
+    *) echo "usage: scripts/install_dependencies.sh [--colmap] [--arm64] [--check]" >&2; exit 2 ;;
   esac
 done
+# The arm64 libraries belong to no package manager's list.
+finish() {
+  ((arm64)) || exit 0
+  if ((check)); then exec "$(dirname "$0")/install_arm64_sysroot.sh" --check; fi
+  exec "$(dirname "$0")/install_arm64_sysroot.sh"
+}
 
 missing=()
 for package in "${PACKAGES[@]}"; do
@@ -49,7 +62,7 @@ for package in "${PACKAGES[@]}"; do
 done
 if ((${#missing[@]} == 0)); then
   echo "dependencies: all ${#PACKAGES[@]} packages are installed"
-  exit 0
+  finish
 fi
 
 if ((check)); then
@@ -72,3 +85,4 @@ export DEBIAN_FRONTEND=noninteractive
 "${as_root[@]}" apt-get update -qq
 "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
   apt-get install -y -qq --no-install-recommends "${missing[@]}"
+finish

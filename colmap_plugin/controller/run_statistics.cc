@@ -8,7 +8,11 @@ namespace {
 uint64_t PeakMemoryBytes() {
   rusage usage = {};
   getrusage(RUSAGE_SELF, &usage);
+#ifdef __APPLE__
+  return static_cast<uint64_t>(usage.ru_maxrss);  // kibibytes everywhere else
+#else
   return static_cast<uint64_t>(usage.ru_maxrss) * 1024;
+#endif
 }
 
 }  // namespace

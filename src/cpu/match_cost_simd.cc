@@ -3,6 +3,9 @@
 #define HWY_TARGET_INCLUDE "src/cpu/match_cost_simd.cc"
 #include "src/cpu/match_cost.h"
 
+// Vectors of a length unknown to the compiler cannot be array elements, as the
+// warps below are; ARM's servers take NEON.
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
