@@ -43,7 +43,7 @@ def measure(hpm_mvs, scene, size, num_refs):
 def formula(width, height, num_srcs, num_refs):
     """Working memory, images in the cache, depth maps of the sources."""
     pixels = width * height
-    working = pixels * (4 * num_srcs + 1 + 40 + 16)
+    working = pixels * (2 * num_srcs + 1 + 40 + 16)
     cached = pixels * (num_srcs + 1) + 4 * pixels * min(num_refs, num_srcs)
     return 80 * MIB + working + cached
 
