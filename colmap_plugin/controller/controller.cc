@@ -23,6 +23,7 @@
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
+#include <tbb/task_arena.h>
 
 namespace hpm {
 namespace {
@@ -88,8 +89,12 @@ RunSummary PatchMatchController::Run() {
     thread_limit.emplace(tbb::global_control::max_allowed_parallelism,
                          static_cast<size_t>(options_.patch_match.num_threads));
   }
-  std::unique_ptr<Backend> cpu =
-      MakeCpuBackend(options_.hpm.cpu_target, options_.patch_match.num_threads);
+  const int num_threads = options_.patch_match.num_threads > 0
+                              ? options_.patch_match.num_threads
+                              : tbb::this_task_arena::max_concurrency();
+  const CpuTarget target = FindCpuTarget(options_.hpm.cpu_target);
+  std::vector<std::unique_ptr<Backend>> cpus;
+  cpus.push_back(MakeCpuBackend(target, num_threads));
 
   log_(LogLevel::kInfo, "Reading workspace...");
   const Workspace workspace(options_.workspace, log_);
@@ -121,13 +126,17 @@ RunSummary PatchMatchController::Run() {
                static_cast<int>(problems.size()),
                RealGpus(),
                log_);
-  const Backend& first = gpus.empty() ? *cpu : *gpus.front();
+  const Backend& first = gpus.empty() ? *cpus.front() : *gpus.front();
   MemoryNeeds needs = LargestNeeds(workspace, problems, first, geometric);
   if (gpus.size() > 1) {
     gpus.resize(
         ImagesInMemory(needs, static_cast<int>(gpus.size()), MemoryLimit()));
-    needs.working *= gpus.size();
+  } else if (gpus.empty() &&
+             CpuImagesInFlight(needs, num_threads, MemoryLimit()) > 1) {
+    cpus.push_back(MakeCpuBackend(target, num_threads));
   }
+  const size_t num_in_flight = std::max(cpus.size(), gpus.size());
+  needs.working *= num_in_flight;
   const std::string backend_name = first.Name();
   InputCache inputs(workspace,
                     PlanCacheBytes(CacheBytes(options_.patch_match.cache_size),
@@ -138,14 +147,14 @@ RunSummary PatchMatchController::Run() {
   log_(LogLevel::kInfo,
        fmt::format("{}{}, method {}, about {} MB of memory",
                    backend_name,
-                   gpus.size() > 1
-                       ? fmt::format(", {} images in flight", gpus.size())
+                   num_in_flight > 1
+                       ? fmt::format(", {} images in flight", num_in_flight)
                        : "",
                    options_.hpm.method,
                    (needs.working + needs.inputs) >> 20));
 
   WorkerPool workers(
-      std::move(cpu),
+      std::move(cpus),
       std::move(gpus),
       [&](Backend* backend) {
         return std::make_unique<StageRunner>(workspace,

@@ -59,6 +59,15 @@ int ImagesInMemory(const MemoryNeeds& needs, int most, uint64_t limit) {
   return count;
 }
 
+int CpuImagesInFlight(const MemoryNeeds& needs,
+                      int num_threads,
+                      uint64_t limit) {
+  constexpr uint64_t kLittleBytes = 256ull << 20;
+  constexpr int kManyThreads = 4;
+  if (num_threads < kManyThreads || needs.working > kLittleBytes) return 1;
+  return ImagesInMemory(needs, 2, limit);
+}
+
 uint64_t CacheBytes(double gibibytes) {
   constexpr double kMaxGibibytes = 1 << 20;
   return static_cast<uint64_t>(std::min(gibibytes, kMaxGibibytes) *

@@ -22,7 +22,6 @@ MemoryNeeds LargestNeeds(const Workspace& workspace,
                          const Backend& backend,
                          bool geometric);
 
-// Of --PatchMatchStereo.cache_size, which may be absurdly large.
 // The largest of all sizes, for memory on a GPU.
 ProblemSize LargestProblem(const Workspace& workspace,
                            const std::vector<StereoProblem>& problems,
@@ -32,6 +31,13 @@ ProblemSize LargestProblem(const Workspace& workspace,
 // least 1.
 int ImagesInMemory(const MemoryNeeds& needs, int most, uint64_t limit);
 
+// 2 where many threads would wait while one image is read or written and a
+// second costs little memory. Else 1.
+int CpuImagesInFlight(const MemoryNeeds& needs,
+                      int num_threads,
+                      uint64_t limit);
+
+// Of --PatchMatchStereo.cache_size, which may be absurdly large.
 uint64_t CacheBytes(double gibibytes);
 
 uint64_t BytesToWrite(const std::vector<StereoProblem>& problems,

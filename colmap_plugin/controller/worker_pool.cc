@@ -3,25 +3,29 @@
 #include "colmap_plugin/controller/work_queue.h"
 #include "cuda/gpu_error.h"
 
+#include <numeric>
 #include <string>
 #include <utility>
 
 namespace hpm {
 
-WorkerPool::WorkerPool(std::unique_ptr<Backend> cpu,
+WorkerPool::WorkerPool(std::vector<std::unique_ptr<Backend>> cpus,
                        std::vector<std::unique_ptr<Backend>> gpus,
                        MakeRunner make_runner,
                        bool may_fall_back,
                        LogSink log)
-    : cpu_(std::move(cpu)),
-      cpu_runner_(make_runner(cpu_.get())),
-      may_fall_back_(may_fall_back),
-      log_(std::move(log)) {
-  for (std::unique_ptr<Backend>& gpu : gpus) {
-    alive_.push_back(static_cast<int>(gpus_.size()));
-    std::unique_ptr<StageRunner> runner = make_runner(gpu.get());
-    gpus_.push_back({std::move(gpu), std::move(runner)});
-  }
+    : may_fall_back_(may_fall_back), log_(std::move(log)) {
+  const auto hire = [&](std::vector<std::unique_ptr<Backend>>* backends,
+                        std::vector<Worker>* workers) {
+    for (std::unique_ptr<Backend>& backend : *backends) {
+      std::unique_ptr<StageRunner> runner = make_runner(backend.get());
+      workers->push_back({std::move(backend), std::move(runner)});
+    }
+  };
+  hire(&cpus, &cpus_);
+  hire(&gpus, &gpus_);
+  alive_.resize(gpus_.size());
+  std::iota(alive_.begin(), alive_.end(), 0);
 }
 
 void WorkerPool::Run(
@@ -52,10 +56,13 @@ void WorkerPool::Run(
          }});
   }
   if (left.empty()) return;
-  std::vector<int> cpu = {0};
+  std::vector<int> cpus(cpus_.size());
+  std::iota(cpus.begin(), cpus.end(), 0);
   RunWorkQueue(left,
-               &cpu,
-               {[&](int, int problem) { compute(cpu_runner_.get(), problem); },
+               &cpus,
+               {[&](int worker, int problem) {
+                  compute(cpus_[worker].runner.get(), problem);
+                },
                 [](int, const Error&) { return false; }});
 }
 

@@ -18,9 +18,9 @@ class WorkerPool {
   using MakeRunner =
       std::function<std::unique_ptr<StageRunner>(Backend* backend)>;
 
-  // Without GPUs the CPU computes. may_fall_back: whether it does so too when
-  // no GPU is left.
-  WorkerPool(std::unique_ptr<Backend> cpu,
+  // Without GPUs the CPU computes, one image in flight per entry of `cpus`.
+  // may_fall_back: whether it does so too when no GPU is left.
+  WorkerPool(std::vector<std::unique_ptr<Backend>> cpus,
              std::vector<std::unique_ptr<Backend>> gpus,
              MakeRunner make_runner,
              bool may_fall_back,
@@ -39,8 +39,7 @@ class WorkerPool {
     std::unique_ptr<StageRunner> runner;
   };
 
-  std::unique_ptr<Backend> cpu_;
-  std::unique_ptr<StageRunner> cpu_runner_;
+  std::vector<Worker> cpus_;
   std::vector<Worker> gpus_;
   std::vector<int> alive_;  // indices into gpus_
   bool may_fall_back_;

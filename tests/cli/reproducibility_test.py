@@ -17,6 +17,8 @@ class Reproducibility(CliTest):
         self.assertEqual(len(one), 4 * 2 * 2)
         self.assert_same_maps(self.maps_of("--PatchMatchStereo.num_threads=2"), one)
         self.assert_same_maps(self.maps_of("--PatchMatchStereo.num_threads=2"), one)
+        # Two images in flight.
+        self.assert_same_maps(self.maps_of("--PatchMatchStereo.num_threads=4"), one)
         self.assertTrue(one != self.maps_of("--random_seed=7"))
 
     def test_kill_and_resume_give_the_bytes_of_a_straight_run(self):

@@ -1,6 +1,7 @@
 // Choice of the device with made-up GPUs, and what a run does when they fail.
 #include "colmap_plugin/controller/devices.h"
 
+#include "colmap_plugin/controller/run_budget.h"
 #include "colmap_plugin/controller/worker_pool.h"
 #include "cuda/gpu_error.h"
 #include "src/cpu/cpu_backend.h"
@@ -181,6 +182,16 @@ TEST_F(DevicesTest, AGpuThatFailsTheSelfTestIsRefused) {
   ExpectError("cuda", ErrorCode::kDevice, "does not open");
 }
 
+TEST(CpuImagesInFlight, ASecondImageOnlyWhereItCostsLittle) {
+  const uint64_t mib = 1 << 20;
+  const MemoryNeeds small = {100 * mib, 50 * mib};
+  EXPECT_EQ(CpuImagesInFlight(small, 4, 1000 * mib), 2);
+  EXPECT_EQ(CpuImagesInFlight(small, 2, 1000 * mib), 1);
+  EXPECT_EQ(CpuImagesInFlight(small, 4, 300 * mib), 1);
+  const MemoryNeeds large = {500 * mib, 50 * mib};
+  EXPECT_EQ(CpuImagesInFlight(large, 4, 100000 * mib), 1);
+}
+
 // The pool never looks into its runners, so there are none here.
 class WorkerPoolTest : public testing::Test {
  protected:
@@ -189,8 +200,10 @@ class WorkerPoolTest : public testing::Test {
     for (int i = 0; i < num_gpus; ++i) {
       gpus.push_back(std::make_unique<MadeUpGpu>(i, true));
     }
+    std::vector<std::unique_ptr<Backend>> cpus;
+    cpus.push_back(MakeCpuBackend("auto", 1));
     return WorkerPool(
-        MakeCpuBackend("auto", 1),
+        std::move(cpus),
         std::move(gpus),
         [](Backend*) { return nullptr; },
         may_fall_back,
