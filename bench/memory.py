@@ -1,51 +1,57 @@
 #!/usr/bin/env python3
 """Peak memory of hpm_mvs at several image sizes, beside the formula of
-docs/architecture.md; computes two reference images with one iteration per pass.
+docs/architecture.md. All images are references with all others as sources; the run
+is stopped after a few images of the last stage, which hold all that a run ever holds.
 
     bench/memory.py --hpm_mvs build/release/colmap_plugin/tool/hpm_mvs \\
-        --scene room_hd --sizes 400 800 1600
+        --scene room_hd --sizes 400 800 1600 --images 2
 """
 import argparse
-import json
+import os
 import pathlib
 import shutil
+import signal
 import subprocess
 import tempfile
+import time
 
 MIB = 1 << 20
 
 
-def measure(hpm_mvs, scene, size, num_refs):
+def measure(hpm_mvs, scene, size, num_images):
     """(width, height, sources, peak bytes)"""
     with tempfile.TemporaryDirectory(prefix="hpm_memory_") as folder:
         dense = pathlib.Path(folder) / "dense"
         (dense / "stereo").mkdir(parents=True)
         for part in ("images", "sparse"):
             (dense / part).symlink_to((scene / part).resolve())
-        names = (scene / "stereo/fusion.cfg").read_text().split("\n")
-        names = [name for name in names if name]
+        names = (scene / "stereo/fusion.cfg").read_text().split()
         (dense / "stereo/patch-match.cfg").write_text(
-            "".join(f"{name}\n__all__\n" for name in names[:num_refs])
+            "".join(f"{name}\n__all__\n" for name in names)
         )
         shutil.copyfile(scene / "stereo/fusion.cfg", dense / "stereo/fusion.cfg")
-        subprocess.run(
+        program = subprocess.Popen(
             [hpm_mvs, "patch_match_stereo", "--workspace_path", dense,
-             "--PatchMatchStereo.max_image_size", str(size), "--Hpm.num_iterations", "1",
-             "--Hpm.num_geom_iterations", "1", "--Hpm.num_geom_passes", "1"],
-            check=True, stdout=subprocess.DEVNULL,
+             "--PatchMatchStereo.max_image_size", str(size), "--Hpm.quality", "low"],
+            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
         )
-        record = json.loads((dense / "stereo/hpm_mvs/run.json").read_text())
-        depth_map = dense / f"stereo/depth_maps/{names[0]}.geometric.bin"
-        width, height = depth_map.read_bytes()[:32].split(b"&")[:2]
-        return int(width), int(height), len(names) - 1, record["peak_memory_bytes"]
+        maps = dense / "stereo/depth_maps"
+        done = []
+        while len(done) < num_images and program.poll() is None:
+            time.sleep(0.05)
+            done = sorted(maps.glob("*.geometric.bin"))
+        program.send_signal(signal.SIGINT)
+        _, _, usage = os.wait4(program.pid, 0)
+        width, height = done[0].read_bytes()[:32].split(b"&")[:2]
+        return int(width), int(height), len(names) - 1, 1024 * usage.ru_maxrss
 
 
-def formula(width, height, num_srcs, num_refs):
-    """Working memory, images in the cache, depth maps of the sources."""
+def formula(width, height, num_srcs):
+    """The program, working memory, images and the sources' depth."""
     pixels = width * height
-    working = pixels * (2 * num_srcs + 1 + 40 + 16)
-    cached = pixels * (num_srcs + 1) + 4 * pixels * min(num_refs, num_srcs)
-    return 80 * MIB + working + cached
+    working = pixels * (2 * num_srcs + 1 + 24 + 22)
+    inputs = pixels * (num_srcs + 1 + 3 * num_srcs)
+    return 80 * MIB + working + inputs
 
 
 def main():
@@ -53,14 +59,14 @@ def main():
     parser.add_argument("--hpm_mvs", required=True)
     parser.add_argument("--scene", type=pathlib.Path, required=True)
     parser.add_argument("--sizes", type=int, nargs="+", default=[400, 800, 1600])
-    parser.add_argument("--refs", type=int, nargs="+", default=[2])
+    parser.add_argument("--images", type=int, nargs="+", default=[2])
     args = parser.parse_args()
-    print("| size | sources | references | measured MiB | formula MiB |\n|---|---|---|---|---|")
+    print("| size | sources | images | measured MiB | formula MiB |\n|---|---|---|---|---|")
     for size in args.sizes:
-        for refs in args.refs:
-            width, height, srcs, peak = measure(args.hpm_mvs, args.scene, size, refs)
-            bound = formula(width, height, srcs, refs)
-            print(f"| {width}x{height} | {srcs} | {refs} | {peak / MIB:.0f} | {bound / MIB:.0f} |",
+        for images in args.images:
+            width, height, srcs, peak = measure(args.hpm_mvs, args.scene, size, images)
+            bound = formula(width, height, srcs)
+            print(f"| {width}x{height} | {srcs} | {images} | {peak / MIB:.0f} | {bound / MIB:.0f} |",
                   flush=True)
 
 

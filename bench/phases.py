@@ -11,6 +11,7 @@ import argparse
 import datetime
 import json
 import pathlib
+import re
 import resource
 import subprocess
 import sys
@@ -39,12 +40,15 @@ def run(hpm_mvs, scene, threads, options):
 
 
 def costs_per_pixel(record):
-    """Mean over the images, per kind of stage: photometric or geometric."""
+    """Mean over the images per pixel of full size, per kind of stage: photometric or
+    geometric."""
     sums = {}
     for stages in record["images"].values():
         for name, stage in stages.items():
-            kind = "geometric" if name.startswith("geometric") else "photometric"
-            sums[kind] = sums.get(kind, 0) + stage["cost_evaluations_per_pixel"]
+            kind = "geometric" if "geometric" in name else "photometric"
+            level = re.match(r"level_(\d+)_", name)
+            share = 0.25 ** int(level.group(1)) if level else 1
+            sums[kind] = sums.get(kind, 0) + share * stage["cost_evaluations_per_pixel"]
     return {kind: total / len(record["images"]) for kind, total in sums.items()}
 
 

@@ -1,0 +1,56 @@
+"""The benchmarks that need nothing but hpm_mvs run to their end and report."""
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+HPM_MVS = os.environ["HPM_MVS"]
+BENCH = pathlib.Path(os.environ["HPM_BENCH"])
+
+
+def output_of(*command):
+    return subprocess.run(
+        [str(word) for word in command], check=True, capture_output=True, text=True
+    ).stdout
+
+
+class ScriptsTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory(prefix="hpm_bench_test_")
+        cls.out = pathlib.Path(cls.folder.name) / "out.json"
+        cls.scene = pathlib.Path(cls.folder.name) / "scene"
+        output_of(os.environ["HPM_MAKE_SCENE"], "tilted_plane", cls.scene,
+                  "--views", 4, "--width", 64, "--height", 48)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def test_phases(self):
+        table = output_of(sys.executable, BENCH / "phases.py", "--hpm_mvs", HPM_MVS,
+                          "--scene", self.scene, "--threads", 1, 2, "--out", self.out)
+        self.assertIn("times faster with 2 threads", table)
+        costs = json.loads(self.out.read_text())["runs"]["2"]
+        self.assertAlmostEqual(
+            sum(costs["costs_per_pixel_per_stage"].values()), costs["costs_per_pixel"], 3
+        )
+
+    def test_memory(self):
+        table = output_of(sys.executable, BENCH / "memory.py", "--hpm_mvs", HPM_MVS,
+                          "--scene", self.scene, "--sizes", 64, "--images", 1)
+        row = table.splitlines()[-1].split("|")
+        self.assertEqual([cell.strip() for cell in row[1:4]], ["64x48", "3", "1"])
+        self.assertGreater(int(row[4]), 10)
+
+    def test_match_cost_speed(self):
+        output_of(os.environ["HPM_MATCH_COST_SPEED"], "--rounds", 1, "--width", 64,
+                  "--height", 48, "--srcs", 2, "--json", self.out)
+        self.assertIn("scalar", self.out.read_text())
+
+
+if __name__ == "__main__":
+    unittest.main()
