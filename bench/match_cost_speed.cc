@@ -23,8 +23,8 @@ namespace po = boost::program_options;
 
 constexpr int kBandRows = 8;
 
-// The arguments of one call of a MatchCostFunction.
-struct Request {
+// A MatchRequest that outlives its visit.
+struct Recorded {
   int col, row;
   int first_plane, num_planes;
   int num_views;
@@ -34,35 +34,33 @@ struct Request {
 // What the recorder keeps. Global: a MatchCostFunction carries no state.
 struct Recording {
   int first_row = 0;
-  std::vector<Request> requests;
+  std::vector<Recorded> requests;
   std::vector<Plane> planes;
   size_t num_pairs = 0;
 } recording;
 
 void RecordMatchCosts(const MatchViews& match,
                       const RefPatch& patch,
-                      int col,
-                      int row,
-                      const Plane* planes,
-                      int num_planes,
-                      const uint8_t* views,
-                      int num_views,
+                      const MatchRequest& request,
                       float* costs) {
   static const MatchCostFunction match_cost = FindCpuTarget("auto").match_cost;
-  match_cost(
-      match, patch, col, row, planes, num_planes, views, num_views, costs);
-  if (row < recording.first_row || row >= recording.first_row + kBandRows)
+  match_cost(match, patch, request, costs);
+  if (request.row < recording.first_row ||
+      request.row >= recording.first_row + kBandRows) {
     return;
-  Request request = {col,
-                     row,
-                     static_cast<int>(recording.planes.size()),
-                     num_planes,
-                     num_views,
-                     {}};
-  std::copy_n(views, num_views, request.views);
-  recording.requests.push_back(request);
-  recording.planes.insert(recording.planes.end(), planes, planes + num_planes);
-  recording.num_pairs += static_cast<size_t>(num_planes) * num_views;
+  }
+  Recorded recorded = {request.col,
+                       request.row,
+                       static_cast<int>(recording.planes.size()),
+                       request.num_planes,
+                       request.num_views,
+                       {}};
+  std::copy_n(request.views, request.num_views, recorded.views);
+  recording.requests.push_back(recorded);
+  recording.planes.insert(recording.planes.end(),
+                          request.planes,
+                          request.planes + request.num_planes);
+  recording.num_pairs += static_cast<size_t>(request.num_pairs());
 }
 
 void Record(const ViewSet& views) {
@@ -94,18 +92,18 @@ double Replay(const CpuTarget& target,
   float costs[kNumRegions * kMaxViews];
   double sum = 0;
   const auto start = std::chrono::steady_clock::now();
-  for (const Request& request : recording.requests) {
+  for (const Recorded& recorded : recording.requests) {
     const int patch =
-        (request.row - recording.first_row) * views.match().ref.width +
-        request.col;
+        (recorded.row - recording.first_row) * views.match().ref.width +
+        recorded.col;
     target.match_cost(views.match(),
                       patches[patch],
-                      request.col,
-                      request.row,
-                      &recording.planes[request.first_plane],
-                      request.num_planes,
-                      request.views,
-                      request.num_views,
+                      {recorded.col,
+                       recorded.row,
+                       &recording.planes[recorded.first_plane],
+                       recorded.num_planes,
+                       recorded.views,
+                       recorded.num_views},
                       costs);
     sum += costs[0];
   }

@@ -68,7 +68,7 @@ inline SyntheticProblem MakeSyntheticProblem(const std::string& scene,
       inverse.push_back(z > 0 ? 1 / z : 0);
     }
     problem.geometric.srcs[k++].inverse_depth =
-        std::make_shared<const std::vector<float>>(std::move(inverse));
+        std::make_shared<const InverseDepthMap>(InverseDepthMap::Of(inverse));
   }
   return problem;
 }

@@ -145,10 +145,10 @@ class CudaBackendImpl : public CudaBackend {
     planner_ = BandPlanner(options_.launch_seconds);
     tables_ = MakeProblemTables(views, params);
     images_->Upload(views, stream());
-    std::vector<const float*> depths;
+    std::vector<InverseDepths> depths;
     for (size_t j = 0; j < views.srcs.size(); ++j) {
       tables_.views[j].texels = images_->texels(static_cast<int>(j));
-      depths.push_back(images_->inverse_depth(static_cast<int>(j)));
+      depths.push_back(images_->inverse_depths(static_cast<int>(j)));
     }
     color_weights_.Upload(tables_.color_weights, stream());
     views_.Upload(tables_.views, stream());
@@ -361,7 +361,7 @@ class CudaBackendImpl : public CudaBackend {
   DeviceBuffer<ViewGeometry> views_;
   DeviceBuffer<ViewWarp> to_src_, to_ref_;
   DeviceBuffer<Vec3f> src_centers_;
-  DeviceBuffer<const float*> depths_;
+  DeviceBuffer<InverseDepths> depths_;
   DeviceBuffer<Plane> planes_, priors_, low_priors_;
   DeviceBuffer<float> costs_;
   DeviceBuffer<uint32_t> masks_, consistent_;

@@ -78,11 +78,12 @@ void DeviceImages::Upload(const ViewSet& views, cudaStream_t stream) {
   }
 
   depths_.resize(num_srcs);
-  depth_pointers_.assign(num_srcs, nullptr);
+  inverse_depths_.assign(num_srcs, {nullptr, 0});
   for (int j = 0; j < num_srcs; ++j) {
     if (views.srcs[j].inverse_depth == nullptr) continue;
-    depths_[j].Upload(*views.srcs[j].inverse_depth, stream);
-    depth_pointers_[j] = depths_[j].data();
+    const InverseDepthMap& map = *views.srcs[j].inverse_depth;
+    depths_[j].Upload(map.steps, stream);
+    inverse_depths_[j] = {depths_[j].data(), map.step};
   }
   CheckCuda(cudaStreamSynchronize(stream), "copying images to the card");
 }

@@ -29,8 +29,10 @@ class DeviceImages {
   float texture_scale() const {
     return format_ == ImageFormat::kByte ? 255.0f : 1.0f;
   }
-  // Of source view j; null: it has no depth map.
-  const float* inverse_depth(int j) const { return depth_pointers_[j]; }
+  // Of source view j.
+  const InverseDepths& inverse_depths(int j) const {
+    return inverse_depths_[j];
+  }
 
  private:
   void MakeTexture(int width, int height, int num_layers);
@@ -39,8 +41,8 @@ class DeviceImages {
   ImageFormat format_;
   DeviceBuffer<uint8_t> ref_, grey_, layer_;
   std::vector<DeviceBuffer<uint32_t>> texels_;
-  std::vector<DeviceBuffer<float>> depths_;
-  std::vector<const float*> depth_pointers_;
+  std::vector<DeviceBuffer<uint8_t>> depths_;
+  std::vector<InverseDepths> inverse_depths_;
   cudaArray_t array_ = nullptr;
   cudaTextureObject_t texture_ = 0;
   int width_ = 0, height_ = 0, num_layers_ = 0;  // of array_

@@ -31,10 +31,10 @@ struct DeviceProblem {
   const ViewGeometry* views;
   const ViewWarp* to_src;  // for the geometric term
   const ViewWarp* to_ref;
-  const float* const* inverse_depths;  // null: the view has no depth map
-  const Vec3f* src_centers;            // in the reference camera frame
-  unsigned long long texture;          // layered, one layer per view
-  float texture_scale;                 // grey levels per unit of a fetch
+  const InverseDepths* inverse_depths;  // of each view
+  const Vec3f* src_centers;             // in the reference camera frame
+  unsigned long long texture;           // layered, one layer per view
+  float texture_scale;                  // grey levels per unit of a fetch
 };
 
 // Of the reference image, 0..255; clamps at the border.
@@ -60,36 +60,29 @@ HPM_HD RefPatch RefPatchAt(const DeviceProblem& problem, int col, int row) {
 }
 
 HPM_HD bool HasDepthMap(const DeviceProblem& problem, int view) {
-  return problem.inverse_depths[view] != nullptr;
+  return problem.inverse_depths[view].steps != nullptr;
 }
 
 // Pixels; 0 for a view without depth map, which has no say.
 HPM_HD float GeometricErrorAt(const DeviceProblem& problem,
-                              const Plane& plane,
+                              const PlaneSlope& slope,
                               int view,
                               int col,
                               int row) {
-  const float* inverse_depth = problem.inverse_depths[view];
-  if (inverse_depth == nullptr) return 0;
+  const InverseDepths inverse_depths = problem.inverse_depths[view];
+  if (inverse_depths.steps == nullptr) return 0;
   const int width = problem.to_src[view].width;
   const int height = problem.to_src[view].height;
-  return ReprojectionError(
-      problem.to_src[view],
-      problem.to_ref[view],
-      SlopeOf(problem.params.ref, plane),
-      static_cast<float>(col),
-      static_cast<float>(row),
-      problem.params.geometric_term.max_error,
-      [&](float u, float v) {
-        return InterpolateInverseDepth(
-            [&](int c, int r) {
-              return inverse_depth[static_cast<size_t>(r) * width + c];
-            },
-            width,
-            height,
-            u,
-            v);
-      });
+  return ReprojectionError(problem.to_src[view],
+                           problem.to_ref[view],
+                           slope,
+                           static_cast<float>(col),
+                           static_cast<float>(row),
+                           problem.params.geometric_term.max_error,
+                           [&](float u, float v) {
+                             return InterpolateInverseDepth(
+                                 inverse_depths, width, height, u, v);
+                           });
 }
 
 }  // namespace hpm

@@ -41,8 +41,8 @@ class DirectCost {
   HPM_HD_MEMBER bool HasDepth(int view) const {
     return HasDepthMap(problem_, view);
   }
-  HPM_HD_MEMBER float GeometricError(const Plane& plane, int view) const {
-    return GeometricErrorAt(problem_, plane, view, col_, row_);
+  HPM_HD_MEMBER float GeometricError(const PlaneSlope& slope, int view) const {
+    return GeometricErrorAt(problem_, slope, view, col_, row_);
   }
 
   HPM_HD_MEMBER int num_evaluations() const { return num_evaluations_; }
@@ -91,8 +91,8 @@ class CoreCost {
   HPM_HD_MEMBER bool HasDepth(int view) const {
     return HasDepthMap(problem_, view);
   }
-  HPM_HD_MEMBER float GeometricError(const Plane& plane, int view) const {
-    return GeometricErrorAt(problem_, plane, view, col_, row_);
+  HPM_HD_MEMBER float GeometricError(const PlaneSlope& slope, int view) const {
+    return GeometricErrorAt(problem_, slope, view, col_, row_);
   }
 
   HPM_HD_MEMBER int num_evaluations() const { return num_evaluations_; }

@@ -1,6 +1,6 @@
 #include "cuda/memory_estimate.h"
 
-#include "src/core/plane.h"
+#include "src/core/geometric_term.h"
 
 #include <algorithm>
 
@@ -50,7 +50,7 @@ uint64_t DeviceBytesNeeded(const ProblemSize& size, ImageFormat format) {
   // Plane, prior, cost, mask, and the filter's masks; grey values.
   const uint64_t state = pixels * (2 * sizeof(Plane) + 3 * sizeof(uint32_t));
   const uint64_t depths =
-      size.geometric ? src_pixels * sizeof(float) * size.num_srcs : 0;
+      size.geometric ? src_pixels * kInverseDepthBytes * size.num_srcs : 0;
   // One image on its way into a layer.
   const uint64_t staging = src_pixels + layer;
   return kOverheadBytes + state + pixels + layer * size.num_srcs + depths +

@@ -2,7 +2,9 @@
 
 namespace hpm {
 
-int NumSteps(const Pass& pass) { return 2 + 2 * pass.num_iterations; }
+int NumSteps(const Pass& pass) {
+  return (pass.start == StartFrom::kStored ? 0 : 2) + 2 * pass.num_iterations;
+}
 
 std::vector<Sweep> SweepsOf(const Pass& pass, uint64_t random_key) {
   const uint64_t pass_key = CombineBits(random_key, pass.id);
@@ -17,7 +19,7 @@ std::vector<Sweep> SweepsOf(const Pass& pass, uint64_t random_key) {
   };
   sweep.kind = SweepKind::kInitialize;
   sweep.key = CombineBits(pass_key, 0);
-  add_both_colors();
+  if (pass.start != StartFrom::kStored) add_both_colors();
   sweep.kind = SweepKind::kUpdate;
   for (int iteration = 0; iteration < pass.num_iterations; ++iteration) {
     sweep.iteration = iteration;

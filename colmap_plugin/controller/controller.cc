@@ -210,7 +210,7 @@ void PatchMatchController::RunStages(const Workspace& workspace,
   for (int s = 0; s < num_stages; ++s) {
     const Stage& stage = plan.stages()[s];
     const int num_needed = plan.CountNeeded(s);
-    inputs->ForgetDepths();
+    inputs->StartStage(stage.spec.level);
     std::vector<int> needed;
     for (int p = 0; p < num_problems; ++p) {
       if (plan.IsNeeded(s, p)) needed.push_back(p);

@@ -10,10 +10,7 @@
 namespace hpm {
 namespace {
 
-// A depth map takes four times the bytes of an image.
-constexpr uint64_t kImageShare = 5;
-
-constexpr int kMaxLevels = 32;
+constexpr uint64_t kImageShare = 1 + kInverseDepthBytes;
 
 }  // namespace
 
@@ -25,12 +22,13 @@ InputCache::InputCache(const Workspace& workspace,
       images_(max_bytes / kImageShare),
       depths_(max_bytes - max_bytes / kImageShare) {}
 
-std::shared_ptr<const GrayImage> InputCache::Image(int image, int level) {
-  const int64_t key = static_cast<int64_t>(image) * kMaxLevels + level;
+std::shared_ptr<const GrayImage> InputCache::Image(int image) {
+  int level;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (unreadable_.count(image) > 0) return nullptr;
-    if (auto cached = images_.Find(key)) return cached;
+    if (auto cached = images_.Find(image)) return cached;
+    level = level_;
   }
   try {
     const Camera& camera = workspace_.camera(image);
@@ -39,7 +37,7 @@ std::shared_ptr<const GrayImage> InputCache::Image(int image, int level) {
     auto loaded = std::make_shared<const GrayImage>(
         level == 0 ? std::move(full) : ShrinkImage(full, level));
     const std::lock_guard<std::mutex> lock(mutex_);
-    images_.Insert(key, loaded, loaded->data.size());
+    images_.Insert(image, loaded, loaded->data.size());
     return loaded;
   } catch (const Error& error) {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -50,26 +48,28 @@ std::shared_ptr<const GrayImage> InputCache::Image(int image, int level) {
   }
 }
 
-std::shared_ptr<const std::vector<float>> InputCache::InverseDepth(
+std::shared_ptr<const InverseDepthMap> InputCache::InverseDepth(
     int image, const Camera& camera, const StageFiles& files) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (auto cached = depths_.Find(image)) return cached;
   }
   try {
-    auto inverse = std::make_shared<const std::vector<float>>(InverseDepths(
+    auto inverse = std::make_shared<const InverseDepthMap>(InverseDepthMap::Of(
         ReadHypotheses(files.depth, files.normal, camera), camera));
     const std::lock_guard<std::mutex> lock(mutex_);
-    depths_.Insert(image, inverse, inverse->size() * sizeof(float));
+    depths_.Insert(image, inverse, inverse->steps.size());
     return inverse;
   } catch (const Error&) {
     return nullptr;
   }
 }
 
-void InputCache::ForgetDepths() {
+void InputCache::StartStage(int level) {
   const std::lock_guard<std::mutex> lock(mutex_);
   depths_.Clear();
+  if (level != level_) images_.Clear();
+  level_ = level;
 }
 
 std::vector<std::string> InputCache::UnreadableImages() const {

@@ -7,6 +7,7 @@
 #include "src/base/log.h"
 #include "src/engine/lru_cache.h"
 #include "src/image/gray_image.h"
+#include "src/image/inverse_depth_map.h"
 
 #include <memory>
 #include <mutex>
@@ -20,17 +21,19 @@ class InputCache {
  public:
   InputCache(const Workspace& workspace, uint64_t max_bytes, LogSink log);
 
-  // At the size of the camera, halved `level` times; null if the file cannot be
-  // read.
-  std::shared_ptr<const GrayImage> Image(int image, int level);
+  // At the size of the camera, halved as the stage wants it; null if the file
+  // cannot be read.
+  std::shared_ptr<const GrayImage> Image(int image);
 
   // 1/z at pixel centres of an image's maps; null if they are absent or
   // damaged.
-  std::shared_ptr<const std::vector<float>> InverseDepth(
-      int image, const Camera& camera, const StageFiles& files);
+  std::shared_ptr<const InverseDepthMap> InverseDepth(int image,
+                                                      const Camera& camera,
+                                                      const StageFiles& files);
 
-  // Depth maps belong to one stage: forget those of the stage before.
-  void ForgetDepths();
+  // Forgets what a stage on images of this level does not read: depth maps,
+  // which belong to the stage before, and images of other levels.
+  void StartStage(int level);
 
   // Names of the images that could not be read so far.
   std::vector<std::string> UnreadableImages() const;
@@ -40,8 +43,9 @@ class InputCache {
   LogSink log_;
   // Held to look up and to keep, not to read: threads decode side by side.
   mutable std::mutex mutex_;
-  LruCache<int64_t, GrayImage> images_;  // by image and level
-  LruCache<int, std::vector<float>> depths_;
+  int level_ = 0;  // of images_
+  LruCache<int, GrayImage> images_;
+  LruCache<int, InverseDepthMap> depths_;
   std::set<int> unreadable_;
 };
 

@@ -26,6 +26,8 @@ ScheduleOptions MakeScheduleOptions(const ControllerOptions& options) {
       options.hpm.num_geom_iterations,
       options.patch_match.geom_consistency ? options.hpm.num_geom_passes : 0,
       options.hpm.num_levels,
+      options.hpm.num_fine_iterations,
+      options.hpm.num_fine_geom_passes,
       options.hpm.prior == "regions"};
 }
 

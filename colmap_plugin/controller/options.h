@@ -48,9 +48,11 @@ struct HpmOptions {
   std::string cpu_target =
       "auto";  // auto, scalar, or a SIMD target of this machine
   int num_iterations =
-      3;  // red/black iterations of a photometric or prior pass
-  int num_geom_iterations = 2;  // of a geometric pass
-  int num_geom_passes = 2;
+      2;  // red/black iterations of a photometric or prior pass
+  int num_geom_iterations = 1;  // of a geometric pass
+  int num_geom_passes = 3;
+  int num_fine_iterations = 0;  // the same at levels finer than the coarsest
+  int num_fine_geom_passes = 1;
   int max_views = 4;              // source views that judge a pixel in a visit
   std::string prior = "regions";  // of hpm: regions, or the paper's triangles
   double weak_gradient = 2;       // grey levels per pixel

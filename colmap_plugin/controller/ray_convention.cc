@@ -80,21 +80,4 @@ HypothesisMap ReadHypotheses(const std::filesystem::path& depth_path,
   return FromColmapMaps(depth, normal, camera);
 }
 
-std::vector<float> InverseDepths(const HypothesisMap& map,
-                                 const Camera& camera) {
-  std::vector<float> inverse(map.planes.size(), 0.0f);
-  for (int row = 0; row < map.height; ++row) {
-    for (int col = 0; col < map.width; ++col) {
-      const size_t i = static_cast<size_t>(row) * map.width + col;
-      if (map.planes[i].distance > 0) {
-        inverse[i] = 1.0f / DepthAt(camera,
-                                    map.planes[i],
-                                    static_cast<float>(col),
-                                    static_cast<float>(row));
-      }
-    }
-  }
-  return inverse;
-}
-
 }  // namespace hpm

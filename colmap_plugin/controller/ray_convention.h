@@ -37,8 +37,4 @@ HypothesisMap ReadHypotheses(const std::filesystem::path& depth_path,
                              const std::filesystem::path& normal_path,
                              const Camera& camera);
 
-// 1/z at the pixel centres, 0 = none.
-std::vector<float> InverseDepths(const HypothesisMap& map,
-                                 const Camera& camera);
-
 }  // namespace hpm

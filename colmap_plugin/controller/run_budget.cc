@@ -20,7 +20,7 @@ MemoryNeeds LargestNeeds(const Workspace& workspace,
     const uint64_t ref_pixels = pixels_of(problem.ref_image);
     uint64_t inputs = ref_pixels;
     for (const int src : problem.src_images) {
-      inputs += pixels_of(src) * (geometric ? 1 + sizeof(float) : 1);
+      inputs += pixels_of(src) * (geometric ? 1 + kInverseDepthBytes : 1);
     }
     const uint64_t maps_being_written = ref_pixels * 4 * sizeof(float);
     const uint64_t working =

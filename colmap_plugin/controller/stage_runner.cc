@@ -89,10 +89,9 @@ ViewSet StageRunner::MakeViews(int stage, int problem) {
   const StereoProblem& p = problems_[problem];
   const std::string& name = workspace_.ImageName(p.ref_image);
   ViewSet views;
-  const int level = plan_.stages()[stage].spec.level;
-  views.ref = {plan_.CameraOf(stage, p.ref_image),
-               inputs_->Image(p.ref_image, level),
-               nullptr};
+  const StageSpec& spec = plan_.stages()[stage].spec;
+  views.ref = {
+      plan_.CameraOf(stage, p.ref_image), inputs_->Image(p.ref_image), nullptr};
   if (views.ref.image == nullptr) {
     throw Error(ErrorCode::kBadInput,
                 workspace_.ImagePath(p.ref_image).string() +
@@ -105,11 +104,11 @@ ViewSet StageRunner::MakeViews(int stage, int problem) {
   src_images_.clear();
   num_without_maps_ = 0;
   misses_maps_ = false;
+  if (spec.passes.empty()) return views;  // nothing is matched
   for (const int src : p.src_images) {
-    View view = {
-        plan_.CameraOf(stage, src), inputs_->Image(src, level), nullptr};
+    View view = {plan_.CameraOf(stage, src), inputs_->Image(src), nullptr};
     if (view.image == nullptr) continue;
-    if (plan_.stages()[stage].spec.geometric) {
+    if (spec.geometric) {
       if (plan_.HasCurrentMaps(stage - 1, src)) {
         view.inverse_depth = inputs_->InverseDepth(
             src, view.camera, plan_.Files(stage - 1, src));
@@ -190,9 +189,11 @@ void StageRunner::Publish(int stage,
       keep[i] = __builtin_popcount(consistent[i]) >= params.min_num_consistent;
     }
   }
-  result->cost_evaluations_per_pixel =
-      static_cast<double>(backend_->num_cost_evaluations()) /
-      static_cast<double>(map.planes.size());
+  if (!info.spec.passes.empty()) {
+    result->cost_evaluations_per_pixel =
+        static_cast<double>(backend_->num_cost_evaluations()) /
+        static_cast<double>(map.planes.size());
+  }
 
   PhaseTimer timer(&result->seconds, "write");
   const DepthAndNormal maps =

@@ -108,8 +108,8 @@ std::vector<OptionSpec> MakeTable() {
           "hpm: planar priors; hpm_fast: with fewer passes; nesp: without priors; "
           "the others are rows of the paper's ablation (docs/ablation.md)"),
       Hpm(kCommon, "quality", &H::quality, OneOf(QualityNames()),
-          "Effort: sets Hpm.num_iterations, num_geom_passes, num_geom_iterations and max_views "
-          "where they are not given (docs/benchmarks.md)"),
+          "Effort: sets Hpm.num_iterations, num_geom_passes and num_fine_iterations where they "
+          "are not given (docs/benchmarks.md)"),
       Hpm(kCommon, "overwrite", &H::overwrite, Anything(),
           "Compute maps again that are complete and made with the same options"),
       Hpm(kCommon, "previews", &H::previews, Anything(),
@@ -178,6 +178,10 @@ std::vector<OptionSpec> MakeTable() {
       Hpm(kExpert, "num_geom_iterations", &H::num_geom_iterations, AtLeast(1),
           "Red/black iterations of a geometric pass"),
       Hpm(kExpert, "num_geom_passes", &H::num_geom_passes, AtLeast(1), "Geometric passes"),
+      Hpm(kExpert, "num_fine_iterations", &H::num_fine_iterations, AtLeast(0),
+          "Hpm.num_iterations at levels finer than the coarsest (Hpm.prior regions)"),
+      Hpm(kExpert, "num_fine_geom_passes", &H::num_fine_geom_passes, AtLeast(1),
+          "Hpm.num_geom_passes at levels finer than the coarsest (Hpm.prior regions)"),
       Hpm(kExpert, "max_views", &H::max_views, Between(1, kMaxViews),
           "Source images that judge a pixel at a time, chosen anew in every iteration"),
       Hpm(kExpert, "prior", &H::prior, OneOf({"regions", "triangles"}),

@@ -6,23 +6,21 @@ namespace {
 Quality MakeQuality(const std::string& name,
                     int num_iterations,
                     int num_geom_passes,
-                    int num_geom_iterations,
-                    int max_views) {
+                    int num_fine_iterations) {
   return {name,
           {{"Hpm.num_iterations", std::to_string(num_iterations)},
            {"Hpm.num_geom_passes", std::to_string(num_geom_passes)},
-           {"Hpm.num_geom_iterations", std::to_string(num_geom_iterations)},
-           {"Hpm.max_views", std::to_string(max_views)}}};
+           {"Hpm.num_fine_iterations", std::to_string(num_fine_iterations)}}};
 }
 
 }  // namespace
 
 const std::vector<Quality>& Qualities() {
   static const std::vector<Quality> qualities = {
-      MakeQuality("low", 2, 1, 1, 3),
-      MakeQuality("medium", 2, 1, 2, 4),
-      MakeQuality("high", 3, 2, 2, 4),
-      MakeQuality("extreme", 4, 3, 3, 4)};
+      MakeQuality("low", 1, 2, 0),
+      MakeQuality("medium", 2, 2, 0),
+      MakeQuality("high", 2, 3, 0),
+      MakeQuality("extreme", 3, 4, 1)};
   return qualities;
 }
 

@@ -7,6 +7,8 @@
 #include "src/core/visit.h"
 
 #include <math.h>
+#include <stdint.h>
+#include <string.h>
 
 namespace hpm {
 
@@ -77,6 +79,13 @@ HPM_HD bool NearlySame(const VisitParams& params,
          params.same_plane_bound;
 }
 
+// Costs are not negative: their order is the order of their bits.
+HPM_HD uint64_t CostKey(float cost, int k) {
+  uint32_t bits;
+  memcpy(&bits, &cost, sizeof(bits));
+  return static_cast<uint64_t>(bits) << 32 | static_cast<uint32_t>(k);
+}
+
 // Best sample among offsets [begin, end) of a region, -1 if none is inside the
 // image or better than *best_cost.
 HPM_HD int BestSample(const SamplingPattern& pattern,
@@ -87,7 +96,9 @@ HPM_HD int BestSample(const SamplingPattern& pattern,
                       int col,
                       int row,
                       float* best_cost) {
-  int best = -1;
+  // The smallest key needs no branch; nothing could predict one.
+  const uint64_t none = CostKey(*best_cost, 0);
+  uint64_t best = none;
   for (int k = begin; k < end; ++k) {
     const int c = col + pattern.dcol[region][k];
     const int r = row + pattern.drow[region][k];
@@ -97,31 +108,51 @@ HPM_HD int BestSample(const SamplingPattern& pattern,
         static_cast<unsigned>(r) >= static_cast<unsigned>(state.height)) {
       continue;
     }
-    const int at = r * state.width + c;
-    if (state.costs[at] < *best_cost) {
-      *best_cost = state.costs[at];
-      best = at;
-    }
+    const uint64_t key = CostKey(state.costs[r * state.width + c], k);
+    best = key < best ? key : best;
   }
-  return best;
+  if (best == none) return -1;
+  const int k = static_cast<int>(best & 0xffffffffu);
+  const int at = (row + pattern.drow[region][k]) * state.width + col +
+                 pattern.dcol[region][k];
+  *best_cost = state.costs[at];
+  return at;
+}
+
+// tau(t_iter, t_ext) of the paper: a cost below it speaks for a candidate.
+HPM_HD float ConvincingCost(int iteration, int extension) {
+  return 0.8f *
+         expf(-static_cast<float>(iteration * iteration * (3 - extension)) /
+              90.0f);
 }
 
 // The paper's test whether a region must grow: fewer than one view below the
 // threshold, or more than two views above the bad cost.
-HPM_HD bool MustExtend(const float* costs,
-                       int num_views,
-                       int iteration,
-                       int extension) {
+HPM_HD bool MustExtend(const float* costs, int num_views, float good_cost) {
   constexpr int kNumGood = 1, kNumBad = 2;
-  const float good_cost =
-      0.8f * expf(-static_cast<float>(iteration * iteration * (3 - extension)) /
-                  90.0f);
   int num_good = 0, num_bad = 0;
   for (int j = 0; j < num_views; ++j) {
     num_good += costs[j] < good_cost;
     num_bad += costs[j] > kBadCost;
   }
   return num_good < kNumGood || num_bad > kNumBad;
+}
+
+// Takes away the regions of largest cost until `count` are left.
+HPM_HD uint32_t CheapestRegions(const float* costs,
+                                uint32_t exists,
+                                int count) {
+  int num_regions = 0;
+  for (int i = 0; i < kNumRegions; ++i) num_regions += exists >> i & 1;
+  for (; num_regions > count; --num_regions) {
+    int worst = -1;
+    for (int i = 0; i < kNumRegions; ++i) {
+      if ((exists >> i & 1) && (worst < 0 || costs[i] > costs[worst]))
+        worst = i;
+    }
+    exists &= ~(1u << worst);
+  }
+  return exists;
 }
 
 // `draw`: random, in [0, 1).
@@ -149,15 +180,20 @@ HPM_HD void CollectCandidates(const VisitParams& params,
   int batch_size = 0;
   candidates->exists = 0;
   candidates->current = 0;
+  int sample[kNumRegions];
   for (int i = 0; i < kNumRegions; ++i) {
     best_cost[i] = 1e30f;
     count[i] = pattern.num_base[i];
-    const int best =
+    sample[i] =
         BestSample(pattern, state, i, 0, count[i], col, row, &best_cost[i]);
-    if (best < 0) continue;
-    candidates->exists |= 1u << i;
-    candidates->plane[i] = state.planes[best];
-    slope[i] = SlopeOf(params.ref, state.planes[best]);
+    if (sample[i] >= 0) candidates->exists |= 1u << i;
+  }
+  candidates->exists =
+      CheapestRegions(best_cost, candidates->exists, params.max_candidates);
+  for (int i = 0; i < kNumRegions; ++i) {
+    if (!(candidates->exists >> i & 1)) continue;
+    candidates->plane[i] = state.planes[sample[i]];
+    slope[i] = SlopeOf(params.ref, candidates->plane[i]);
     if (NearlySame(params, slope[i], current, x, y))
       candidates->current |= 1u << i;
     same_as[i] = i;
@@ -169,7 +205,7 @@ HPM_HD void CollectCandidates(const VisitParams& params,
     }
     if (same_as[i] != i) continue;
     batch_region[batch_size] = static_cast<uint8_t>(i);
-    batch[batch_size++] = state.planes[best];
+    batch[batch_size++] = candidates->plane[i];
   }
   const int num_views = candidates->num_views;
 
@@ -195,12 +231,11 @@ HPM_HD void CollectCandidates(const VisitParams& params,
     }
     if (extension == pattern.max_extensions) break;
     batch_size = 0;
+    const float good_cost = ConvincingCost(iteration, extension);
     for (int i = 0; i < kNumRegions; ++i) {
       if (!(growing >> i & 1)) continue;
-      if (!MustExtend(&candidates->matrix[i * num_views],
-                      num_views,
-                      iteration,
-                      extension)) {
+      if (!MustExtend(
+              &candidates->matrix[i * num_views], num_views, good_cost)) {
         growing &= ~(1u << i);
         continue;
       }

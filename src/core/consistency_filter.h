@@ -12,6 +12,11 @@ struct FilterParams {
   float min_triangulation_angle;  // radians
   float max_reprojection_error;   // pixels
   int min_num_consistent;
+  int step = 1;  // only every step-th column and row is looked at
+
+  HPM_HD_MEMBER bool LooksAt(int col, int row) const {
+    return col % step == 0 && row % step == 0;
+  }
 };
 
 // Bit j: source view j is consistent. src_centers: camera centres in the
@@ -29,6 +34,7 @@ HPM_HD uint32_t ConsistentViews(const VisitParams& params,
   const Vec3f point = (-plane.distance / Dot(plane.normal, ray)) * ray;
   const Vec3f to_ref = -Normalized(point);
   const float max_cos = cosf(filter.min_triangulation_angle);
+  const PlaneSlope slope = SlopeOf(params.ref, plane);
   uint8_t views[kMaxViews];
   int num_views = 0;
   for (int j = 0; j < params.num_views; ++j) {
@@ -38,7 +44,7 @@ HPM_HD uint32_t ConsistentViews(const VisitParams& params,
     if (Dot(to_src, to_ref) > max_cos * distance) continue;
     if (params.geometric && !cost.HasDepth(j)) continue;
     if (params.geometric &&
-        cost.GeometricError(plane, j) > filter.max_reprojection_error)
+        cost.GeometricError(slope, j) > filter.max_reprojection_error)
       continue;
     views[num_views++] = static_cast<uint8_t>(j);
   }

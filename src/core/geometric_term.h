@@ -5,6 +5,9 @@
 #include "src/core/warp.h"
 
 #include <math.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
 
 namespace hpm {
 
@@ -31,8 +34,9 @@ HPM_HD float ReprojectionError(const ViewWarp& to_src,
       to_src.M * Vec3f{col, row, 1.0f} -
       (slope.col * col + slope.row * row + slope.constant) * to_src.v;
   if (!(q.z > 0)) return max_error;
-  const float u = q.x / q.z;
-  const float v = q.y / q.z;
+  const float inv_q = 1 / q.z;
+  const float u = q.x * inv_q;
+  const float v = q.y * inv_q;
   if (!(u >= -0.5f && v >= -0.5f &&
         u <= static_cast<float>(to_src.width) - 0.5f &&
         v <= static_cast<float>(to_src.height) - 0.5f)) {
@@ -42,36 +46,62 @@ HPM_HD float ReprojectionError(const ViewWarp& to_src,
   if (!(inv_z > 0)) return max_error;
   const Vec3f p = to_ref.M * Vec3f{u, v, 1.0f} + inv_z * to_ref.v;
   if (!(p.z > 0)) return max_error;
-  const float dcol = p.x / p.z - col;
-  const float drow = p.y / p.z - row;
+  const float inv_p = 1 / p.z;
+  const float dcol = p.x * inv_p - col;
+  const float drow = p.y * inv_p - row;
   const float error = sqrtf(dcol * dcol + drow * drow);
   return error < max_error ? error : max_error;
 }
 
+// 1/z of a source view at its pixel centres, row-major, 0 = no depth, in steps
+// of 24 bits: three bytes each, lowest first, and one byte behind the last. A
+// null pointer: the view has no depth map. Non-owning.
+struct InverseDepths {
+  const uint8_t* steps;
+  float step;
+};
+
+constexpr int kInverseDepthBytes = 3;
+
+// In steps; exact in a float.
+HPM_HD float InverseDepthSteps(const uint8_t* steps, size_t at) {
+  const uint8_t* bytes = steps + kInverseDepthBytes * at;
+#if defined(__CUDA_ARCH__)
+  return static_cast<float>(bytes[0] | bytes[1] << 8 | bytes[2] << 16);
+#else
+  uint32_t four;
+  memcpy(&four, bytes, sizeof(four));
+  return static_cast<float>(static_cast<int>(four & 0xffffff));
+#endif
+}
+
 // Bilinear 1/z where the four taps belong to one surface, else the nearest tap.
-// `at(col, row)` returns 1/z at a pixel, 0 = none.
-template <class At>
 HPM_HD float InterpolateInverseDepth(
-    const At& at, int width, int height, float u, float v) {
-  constexpr float kSameSurface = 0.02f;  // relative difference
+    const InverseDepths& map, int width, int height, float u, float v) {
+  constexpr float kSameSurface = 0.02f;  // relative to the first tap
   const float cu = Clamp(u, 0.0f, static_cast<float>(width - 1));
   const float cv = Clamp(v, 0.0f, static_cast<float>(height - 1));
   const int col = static_cast<int>(cu);
   const int row = static_cast<int>(cv);
   const int col1 = col + 1 < width ? col + 1 : col;
-  const int row1 = row + 1 < height ? row + 1 : row;
+  const size_t top_row = static_cast<size_t>(row) * width;
+  const size_t bottom_row = row + 1 < height ? top_row + width : top_row;
   const float fu = cu - static_cast<float>(col);
   const float fv = cv - static_cast<float>(row);
-  const float a = at(col, row), b = at(col1, row), c = at(col, row1),
-              d = at(col1, row1);
-  const float lo = Smaller(Smaller(a, b), Smaller(c, d));
-  const float hi = Larger(Larger(a, b), Larger(c, d));
-  if (lo > 0 && hi - lo <= kSameSurface * hi) {
-    const float top = a + fu * (b - a);
-    const float bottom = c + fu * (d - c);
-    return top + fv * (bottom - top);
-  }
-  return fv < 0.5f ? (fu < 0.5f ? a : b) : (fu < 0.5f ? c : d);
+  const float a = InverseDepthSteps(map.steps, top_row + col),
+              b = InverseDepthSteps(map.steps, top_row + col1),
+              c = InverseDepthSteps(map.steps, bottom_row + col),
+              d = InverseDepthSteps(map.steps, bottom_row + col1);
+  const float bound = kSameSurface * a;
+  // Bitwise: one branch for all, which is nearly always the same.
+  const bool same = (a > 0) & (fabsf(b - a) <= bound) &
+                    (fabsf(c - a) <= bound) & (fabsf(d - a) <= bound);
+  // Weights of 0 or 1 give the nearest tap exactly.
+  const float wu = same ? fu : (fu < 0.5f ? 0.0f : 1.0f);
+  const float wv = same ? fv : (fv < 0.5f ? 0.0f : 1.0f);
+  const float top = a + wu * (b - a);
+  const float bottom = c + wu * (d - c);
+  return map.step * (top + wv * (bottom - top));
 }
 
 }  // namespace hpm

@@ -9,6 +9,7 @@ namespace hpm {
 
 enum class StartFrom {
   kRandom,   // random depth and normal
+  kStored,   // the stored hypothesis at its stored cost: nothing to do
   kCurrent,  // the stored hypothesis
   kPrior,    // the prior, slightly perturbed, where there is one and the stored
              // cost is not convincing; else the stored hypothesis

@@ -21,19 +21,28 @@ HPM_HD void MedianFilterPixel(const Camera& camera,
       {0, -1},  {0, -3}, {0, -5},  {0, 1},  {0, 3},  {0, 5},  {-1, 0},
       {-3, 0},  {-5, 0}, {1, 0},   {3, 0},  {5, 0},  {2, -1}, {2, 1},
       {-2, -1}, {-2, 1}, {-1, -2}, {1, -2}, {-1, 2}, {1, 2}};
-  float depths[kNumNeighbours + 1];
+  // Of the smaller half and the median, sorted: the median of `count` depths
+  // never lies behind.
+  constexpr int kNumKept = kNumNeighbours / 2 + 1;
+  float depths[kNumKept];
   int count = 0;
   for (int k = -1; k < kNumNeighbours; ++k) {
     const int c = k < 0 ? col : col + offsets[k][0];
     const int r = k < 0 ? row : row + offsets[k][1];
     if (c < 0 || r < 0 || c >= state.width || r >= state.height) continue;
-    const float z = DepthAt(camera,
-                            state.planes[r * state.width + c],
-                            static_cast<float>(c),
-                            static_cast<float>(r));
-    int i = count++;
-    for (; i > 0 && depths[i - 1] > z; --i) depths[i] = depths[i - 1];
-    depths[i] = z;
+    float z = DepthAt(camera,
+                      state.planes[r * state.width + c],
+                      static_cast<float>(c),
+                      static_cast<float>(r));
+    // Insertion without a branch that nothing could predict.
+    const int num_kept = count < kNumKept ? count : kNumKept;
+    for (int i = 0; i < num_kept; ++i) {
+      const float smaller = Smaller(depths[i], z);
+      z = Larger(depths[i], z);
+      depths[i] = smaller;
+    }
+    if (count < kNumKept) depths[count] = z;
+    ++count;
   }
   const float median = count % 2 == 1
                            ? depths[count / 2]

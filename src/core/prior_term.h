@@ -19,18 +19,17 @@ HPM_HD float AngleBetween(const Vec3f& a, const Vec3f& b) {
   return acosf(Clamp(Dot(a, b), -1.0f, 1.0f));
 }
 
-// Logarithm of the posterior (to be maximised); the logarithm keeps high costs
-// apart where the product would underflow.
-HPM_HD float LogPosterior(const PriorTerm& term,
-                          float cost,
-                          float depth,
-                          const Vec3f& normal,
-                          float prior_depth,
-                          const Vec3f& prior_normal) {
+// What nearness to the prior is worth, in units of squared cost: the order of
+// the posteriors is the order of bonus - cost^2.
+HPM_HD float PriorBonus(const PriorTerm& term,
+                        float depth,
+                        const Vec3f& normal,
+                        float prior_depth,
+                        const Vec3f& prior_normal) {
   const float dz = (depth - prior_depth) / term.sigma_depth;
   const float da = AngleBetween(normal, prior_normal) / term.sigma_angle;
   const float likeness = expf(-0.5f * (dz * dz + da * da));
-  return logf(term.gamma + likeness) - cost * cost / term.beta;
+  return term.beta * logf(term.gamma + likeness);
 }
 
 }  // namespace hpm

@@ -24,21 +24,51 @@ HPM_HD void ViewProbabilities(const VisitParams& params,
   KeepLargest(params.max_drawn_views, candidates.num_views, probability);
 }
 
-// Higher is better; without a prior the order of the costs decides.
-struct Ranking {
-  const VisitParams* params;
-  bool has_prior;
+// What a hypothesis is worth beside its cost; nothing without a prior.
+struct Bonus {
+  const PriorTerm* term;
+  const Plane* prior;  // null: none
   float prior_depth;
-  Vec3f prior_normal;
 
-  HPM_HD_MEMBER float operator()(float cost,
-                                 float depth,
-                                 const Vec3f& normal) const {
-    if (!has_prior) return -cost;
-    return LogPosterior(
-        params->prior_term, cost, depth, normal, prior_depth, prior_normal);
+  HPM_HD_MEMBER float operator()(float depth, const Vec3f& normal) const {
+    if (prior == nullptr) return 0;
+    return PriorBonus(*term, depth, normal, prior_depth, prior->normal);
   }
 };
+
+// The best hypothesis so far.
+struct Best {
+  Plane plane;
+  float cost;
+  float bonus;
+
+  // A hypothesis of this bonus is better if its cost lies below.
+  HPM_HD_MEMBER float Limit(float other_bonus) const {
+    return sqrtf(Larger(cost * cost + (other_bonus - bonus), 0.0f));
+  }
+};
+
+// Takes the plane if it is better; its photometric cost is known.
+template <class Cost>
+HPM_HD bool TakeIfBetter(const VisitParams& params,
+                         const Cost& cost,
+                         const ViewWeights& weights,
+                         const Bonus& bonus,
+                         const Vec3f& ray,
+                         const Plane& plane,
+                         float photometric,
+                         Best* best) {
+  const float z = -plane.distance / Dot(plane.normal, ray);
+  if (!(z >= params.depth_min && z <= params.depth_max)) return false;
+  const float plane_bonus = bonus(z, plane.normal);
+  const float limit = best->Limit(plane_bonus);
+  if (!(photometric < limit)) return false;
+  const float total =
+      WithGeometricTerm(params, cost, weights, plane, photometric);
+  if (!(total < limit)) return false;
+  *best = {plane, total, plane_bonus};
+  return true;
+}
 
 // New hypotheses for the pixel at (x, y) whose plane is `best`; returns their
 // number. `prior` may be null.
@@ -121,74 +151,55 @@ HPM_HD void UpdatePixel(const VisitParams& params,
                                         params.num_view_draws,
                                         rng->Uniform());
 
-  Ranking rank = {&params, false, 0, {0, 0, 0}};
-  if (state.priors != nullptr && state.priors[at].distance > 0) {
-    rank.has_prior = true;
-    rank.prior_normal = state.priors[at].normal;
-    rank.prior_depth = -state.priors[at].distance / Dot(rank.prior_normal, ray);
-  }
+  const bool has_prior =
+      state.priors != nullptr && state.priors[at].distance > 0;
+  const Plane* prior = has_prior ? &state.priors[at] : nullptr;
+  const Bonus bonus = {
+      &params.prior_term,
+      prior,
+      has_prior ? -prior->distance / Dot(prior->normal, ray) : 0.0f};
 
-  Plane best = state.planes[at];
-  float best_cost;
+  Best best = {state.planes[at], 0, 0};
   if (candidates.current != 0) {
     int same = 0;
     while (!(candidates.current >> same & 1)) ++same;
-    best_cost = WeightedMean(
+    best.cost = WeightedMean(
         weights, &candidates.matrix[same * candidates.num_views], true);
   } else {
-    PhotometricCosts(cost, weights, &best, 1, &best_cost);
+    PhotometricCosts(cost, weights, &best.plane, 1, &best.cost);
   }
-  best_cost += GeometricCost(params, cost, weights, best);
-  float best_rank =
-      rank(best_cost, -best.distance / Dot(best.normal, ray), best.normal);
+  best.cost = WithGeometricTerm(params, cost, weights, best.plane, best.cost);
+  best.bonus = bonus(-best.plane.distance / Dot(best.plane.normal, ray),
+                     best.plane.normal);
   bool propagated = false;
 
   // Candidates: their photometric costs are known already.
   for (int i = 0; i < kNumRegions; ++i) {
     if (!((candidates.exists & ~candidates.current) >> i & 1)) continue;
-    const Plane& plane = candidates.plane[i];
-    const float z = -plane.distance / Dot(plane.normal, ray);
-    if (!(z >= params.depth_min && z <= params.depth_max)) continue;
-    float candidate_cost = WeightedMean(
+    const float photometric = WeightedMean(
         weights, &candidates.matrix[i * candidates.num_views], true);
-    // The geometric cost is never negative.
-    if (!(rank(candidate_cost, z, plane.normal) > best_rank)) continue;
-    candidate_cost += GeometricCost(params, cost, weights, plane);
-    const float candidate_rank = rank(candidate_cost, z, plane.normal);
-    if (candidate_rank > best_rank) {
-      best = plane;
-      best_cost = candidate_cost;
-      best_rank = candidate_rank;
-      propagated = true;
-    }
+    propagated |= TakeIfBetter(params,
+                               cost,
+                               weights,
+                               bonus,
+                               ray,
+                               candidates.plane[i],
+                               photometric,
+                               &best);
   }
 
   Plane refined[kNumRefined];
   float refined_cost[kNumRefined];
   const int num_refined =
-      RefinedPlanes(params,
-                    best,
-                    rank.has_prior ? &state.priors[at] : nullptr,
-                    x,
-                    y,
-                    rng,
-                    refined);
+      RefinedPlanes(params, best.plane, prior, x, y, rng, refined);
   PhotometricCosts(cost, weights, refined, num_refined, refined_cost);
   for (int i = 0; i < num_refined; ++i) {
-    const float z = -refined[i].distance / Dot(refined[i].normal, ray);
-    if (!(z >= params.depth_min && z <= params.depth_max)) continue;
-    if (!(rank(refined_cost[i], z, refined[i].normal) > best_rank)) continue;
-    refined_cost[i] += GeometricCost(params, cost, weights, refined[i]);
-    const float refined_rank = rank(refined_cost[i], z, refined[i].normal);
-    if (refined_rank > best_rank) {
-      best = refined[i];
-      best_cost = refined_cost[i];
-      best_rank = refined_rank;
-    }
+    TakeIfBetter(
+        params, cost, weights, bonus, ray, refined[i], refined_cost[i], &best);
   }
 
-  state.planes[at] = best;
-  state.costs[at] = best_cost;
+  state.planes[at] = best.plane;
+  state.costs[at] = best.cost;
   if (propagated) state.masks[at] = weights.mask;
 }
 

@@ -7,7 +7,7 @@
 //     a batch, so that the backend can fill its lanes;
 //   bool HasDepth(int view) const;
 //     whether the view has a depth map (geometric passes only);
-//   float GeometricError(const Plane& plane, int view) const;
+//   float GeometricError(const PlaneSlope& slope, int view) const;
 //     reprojection error in pixels, capped (geometric passes only).
 #pragma once
 
@@ -36,6 +36,7 @@ struct VisitParams {
   GeometricTerm geometric_term;
   PriorTerm prior_term;
   int max_drawn_views;  // see KeepLargest()
+  int max_candidates;   // regions that a visit looks into
   // Refinement without hypotheses from the whole depth range.
   bool search_near;
 };
@@ -70,19 +71,21 @@ HPM_HD void PhotometricCosts(const Cost& cost,
   }
 }
 
-// What the geometric term adds to the cost of a plane, never negative; 0 in
-// photometric passes.
+// The photometric cost of a plane plus, in geometric passes, the geometric
+// term, which is never negative.
 template <class Cost>
-HPM_HD float GeometricCost(const VisitParams& params,
-                           const Cost& cost,
-                           const ViewWeights& weights,
-                           const Plane& plane) {
-  if (!params.geometric) return 0;
+HPM_HD float WithGeometricTerm(const VisitParams& params,
+                               const Cost& cost,
+                               const ViewWeights& weights,
+                               const Plane& plane,
+                               float photometric) {
+  if (!params.geometric) return photometric;
+  const PlaneSlope slope = SlopeOf(params.ref, plane);
   float sum = 0;
   for (int k = 0; k < weights.num_views; ++k) {
-    sum += weights.weight[k] * cost.GeometricError(plane, weights.view[k]);
+    sum += weights.weight[k] * cost.GeometricError(slope, weights.view[k]);
   }
-  return params.geometric_term.weight * sum / weights.weight_sum;
+  return photometric + params.geometric_term.weight * sum / weights.weight_sum;
 }
 
 }  // namespace hpm

@@ -53,7 +53,9 @@ class CpuBackend : public Backend {
     const PixelState state = map->View();
     const VisitParams params = ForPass(visit_, method_, pass);
     const uint64_t pass_key = CombineBits(random_key_, pass.id);
-    const int num_steps = 2 + 2 * pass.num_iterations;  // two half-sweeps each
+    // Two half-sweeps each.
+    const int num_steps =
+        (pass.start == StartFrom::kStored ? 0 : 2) + 2 * pass.num_iterations;
     int step = 0;
     const auto finish_step = [&] {
       if (control.progress)
@@ -61,7 +63,8 @@ class CpuBackend : public Backend {
     };
 
     const uint64_t start_key = CombineBits(pass_key, 0);
-    for (int color = 0; color < 2; ++color) {
+    for (int color = 0; pass.start != StartFrom::kStored && color < 2;
+         ++color) {
       HalfSweep(state, color, control, [&](int col, int row) {
         const CpuPixelCost cost = CostAt(col, row);
         Rng rng(start_key, col, row);
@@ -101,6 +104,7 @@ class CpuBackend : public Backend {
         map.width, map.height, nullptr, nullptr, nullptr, nullptr};
     for (int color = 0; color < 2; ++color) {
       HalfSweep(size, color, control, [&](int col, int row) {
+        if (!filter.LooksAt(col, row)) return uint64_t{0};
         const size_t at = static_cast<size_t>(row) * map.width + col;
         const CpuPixelCost cost = CostAt(col, row);
         consistent[at] = hpm::ConsistentViews(params,

@@ -101,26 +101,19 @@ float CpuViews::GeometricError(const PlaneSlope& slope,
   // Without a depth map the view has no say; an error would count against every
   // hypothesis.
   if (inverse_depths_[view] == nullptr) return 0;
-  const float* inverse_depth = inverse_depths_[view]->data();
+  const InverseDepths inverse_depths = inverse_depths_[view]->View();
   const int width = to_src_[view].width;
   const int height = to_src_[view].height;
-  return ReprojectionError(
-      to_src_[view],
-      to_ref_[view],
-      slope,
-      col,
-      row,
-      max_error,
-      [&](float u, float v) {
-        return InterpolateInverseDepth(
-            [&](int c, int r) {
-              return inverse_depth[static_cast<size_t>(r) * width + c];
-            },
-            width,
-            height,
-            u,
-            v);
-      });
+  return ReprojectionError(to_src_[view],
+                           to_ref_[view],
+                           slope,
+                           col,
+                           row,
+                           max_error,
+                           [&](float u, float v) {
+                             return InterpolateInverseDepth(
+                                 inverse_depths, width, height, u, v);
+                           });
 }
 
 uint64_t CpuViews::MemoryNeeded(int width, int height, int num_srcs) {

@@ -43,7 +43,7 @@ class CpuViews {
   std::vector<Texel, HugePageAllocator<Texel>> texels_;
   MatchViews match_;
   std::vector<ViewWarp> to_src_, to_ref_;
-  std::vector<std::shared_ptr<const std::vector<float>>> inverse_depths_;
+  std::vector<std::shared_ptr<const InverseDepthMap>> inverse_depths_;
   std::vector<Vec3f> src_centers_;
 };
 
@@ -66,22 +66,16 @@ class CpuPixelCost {
                    const uint8_t* views,
                    int num_views,
                    float* costs) const {
-    match_cost_(views_.match(),
-                patch_,
-                col_,
-                row_,
-                planes,
-                num_planes,
-                views,
-                num_views,
-                costs);
-    num_evaluations_ += static_cast<uint64_t>(num_planes) * num_views;
+    const MatchRequest request = {
+        col_, row_, planes, num_planes, views, num_views};
+    match_cost_(views_.match(), patch_, request, costs);
+    num_evaluations_ += static_cast<uint64_t>(request.num_pairs());
   }
 
   bool HasDepth(int view) const { return views_.HasDepth(view); }
 
-  float GeometricError(const Plane& plane, int view) const {
-    return views_.GeometricError(SlopeOf(views_.match().ref, plane),
+  float GeometricError(const PlaneSlope& slope, int view) const {
+    return views_.GeometricError(slope,
                                  view,
                                  static_cast<float>(col_),
                                  static_cast<float>(row_),

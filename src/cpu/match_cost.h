@@ -28,16 +28,22 @@ struct MatchViews {
   alignas(64) int32_t offset[kMaxViews];  // bytes from `origin` to the image
 };
 
-// Computes costs[i * num_src + k] of planes[i] in view views[k] at pixel (col,
-// row).
+// All planes in all views, at one pixel.
+struct MatchRequest {
+  int col, row;
+  const Plane* planes;
+  int num_planes;
+  const uint8_t* views;
+  int num_views;
+
+  int num_pairs() const { return num_planes * num_views; }
+};
+
+// Computes costs[i * num_views + k] of planes[i] in view views[k]; `patch` is
+// that of the pixel.
 using MatchCostFunction = void (*)(const MatchViews& match,
                                    const RefPatch& patch,
-                                   int col,
-                                   int row,
-                                   const Plane* planes,
-                                   int num_planes,
-                                   const uint8_t* views,
-                                   int num_views,
+                                   const MatchRequest& request,
                                    float* costs);
 
 struct CpuTarget {

@@ -8,17 +8,14 @@ namespace hpm {
 
 void ScalarMatchCosts(const MatchViews& match,
                       const RefPatch& patch,
-                      int col,
-                      int row,
-                      const Plane* planes,
-                      int num_planes,
-                      const uint8_t* views,
-                      int num_views,
+                      const MatchRequest& request,
                       float* costs) {
-  for (int p = 0; p < num_planes; ++p) {
-    const PlaneSlope slope = SlopeOf(match.ref, planes[p]);
-    for (int k = 0; k < num_views; ++k) {
-      const int view = views[k];
+  const float col = static_cast<float>(request.col);
+  const float row = static_cast<float>(request.row);
+  for (int p = 0; p < request.num_planes; ++p) {
+    const PlaneSlope slope = SlopeOf(match.ref, request.planes[p]);
+    for (int k = 0; k < request.num_views; ++k) {
+      const int view = request.views[k];
       ViewWarp warp;
       for (int i = 0; i < 9; ++i) warp.M.m[i] = match.M[i][view];
       warp.v = {match.v[0][view], match.v[1][view], match.v[2][view]};
@@ -38,14 +35,13 @@ void ScalarMatchCosts(const MatchViews& match,
                     bottom = p10 + fu * (p11 - p10);
         return top + fv * (bottom - top);
       };
-      costs[p * num_views + k] = MatchCost(
-          match.shape,
-          patch,
-          WarpPatch(
-              warp, slope, static_cast<float>(col), static_cast<float>(row)),
-          sample,
-          static_cast<int>(match.max_u[view]) + 1,
-          static_cast<int>(match.max_v[view]) + 1);
+      costs[p * request.num_views + k] =
+          MatchCost(match.shape,
+                    patch,
+                    WarpPatch(warp, slope, col, row),
+                    sample,
+                    static_cast<int>(match.max_u[view]) + 1,
+                    static_cast<int>(match.max_v[view]) + 1);
     }
   }
 }

@@ -9,12 +9,7 @@ namespace hpm {
 // See MatchCostFunction.
 void ScalarMatchCosts(const MatchViews& match,
                       const RefPatch& patch,
-                      int col,
-                      int row,
-                      const Plane* planes,
-                      int num_planes,
-                      const uint8_t* views,
-                      int num_views,
+                      const MatchRequest& request,
                       float* costs);
 
 }  // namespace hpm

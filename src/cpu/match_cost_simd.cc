@@ -77,18 +77,17 @@ HWY_INLINE auto Truncate(V v) {
 #endif
 
 HWY_INLINE void FillPairs(const MatchViews& match,
-                          float col,
-                          float row,
-                          const Plane* planes,
-                          int num_planes,
-                          const uint8_t* views,
-                          int num_views,
+                          const MatchRequest& request,
                           Pairs* pairs) {
   const DF df;
+  const float col = static_cast<float>(request.col);
+  const float row = static_cast<float>(request.row);
+  const int num_planes = request.num_planes;
+  const int num_views = request.num_views;
   const int lanes = static_cast<int>(hn::Lanes(df));
   Chosen chosen;
   for (int k = 0; k < num_views; ++k) {
-    const int view = views[k];
+    const int view = request.views[k];
     for (int i = 0; i < 3; ++i) {
       const float a = match.M[3 * i][view], b = match.M[3 * i + 1][view];
       chosen.origin[i][k] = a * col + b * row + match.M[3 * i + 2][view];
@@ -107,7 +106,7 @@ HWY_INLINE void FillPairs(const MatchViews& match,
   // A vector store past the views of one plane is overwritten by the next
   // plane.
   for (int p = 0; p < num_planes; ++p) {
-    const PlaneSlope m = SlopeOf(match.ref, planes[p]);
+    const PlaneSlope m = SlopeOf(match.ref, request.planes[p]);
     const auto m_col = hn::Set(df, m.col);
     const auto m_row = hn::Set(df, m.row);
     const auto m_here = hn::Set(df, m.col * col + m.row * row + m.constant);
@@ -268,29 +267,17 @@ HWY_INLINE void CostsFrom(D df,
 
 void MatchCosts(const MatchViews& match,
                 const RefPatch& patch,
-                int col,
-                int row,
-                const Plane* planes,
-                int num_planes,
-                const uint8_t* views,
-                int num_views,
+                const MatchRequest& request,
                 float* costs) {
   const DF df;
   const int lanes = static_cast<int>(hn::Lanes(df));
-  const int num_pairs = num_planes * num_views;
+  const int num_pairs = request.num_pairs();
   if (patch.variance < kMinVariance) {
     for (int i = 0; i < num_pairs; ++i) costs[i] = kMaxCost;
     return;
   }
   Pairs pairs;
-  FillPairs(match,
-            static_cast<float>(col),
-            static_cast<float>(row),
-            planes,
-            num_planes,
-            views,
-            num_views,
-            &pairs);
+  FillPairs(match, request, &pairs);
   // Lanes behind the last pair: a copy of nothing, seen by no camera.
   for (int pair = num_pairs; pair % lanes != 0; ++pair) {
     pairs.origin[2][pair] = -1;

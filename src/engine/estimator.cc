@@ -41,6 +41,7 @@ void RunStage(Backend* backend,
               const RunControl& control,
               HypothesisMap* map,
               PhaseTimes* times) {
+  if (stage.passes.empty()) return;
   {
     PhaseTimer timer(times, "prepare");
     backend->SetViews(views, params);

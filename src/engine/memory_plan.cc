@@ -16,6 +16,8 @@ namespace {
 // The program itself, libraries, decoders, stacks of threads.
 constexpr uint64_t kOverheadBytes = 200ull << 20;
 
+constexpr uint64_t kPlentyBytes = 512ull << 20;
+
 uint64_t ControlGroupLimit() {
   for (const char* path : {"/sys/fs/cgroup/memory.max",
                            "/sys/fs/cgroup/memory/memory.limit_in_bytes"}) {
@@ -61,8 +63,10 @@ uint64_t PlanCacheBytes(uint64_t asked_bytes,
             need >> 20,
             limit >> 20));
   }
-  return std::clamp(
-      asked_bytes, min_cache_bytes, limit - kOverheadBytes - working_bytes);
+  const uint64_t paying = std::max(kPlentyBytes, min_cache_bytes);
+  return std::clamp(std::min(asked_bytes, paying),
+                    min_cache_bytes,
+                    limit - kOverheadBytes - working_bytes);
 }
 
 }  // namespace hpm

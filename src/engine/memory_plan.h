@@ -9,10 +9,12 @@ namespace hpm {
 // limit and the address space limit (ulimit -v).
 uint64_t MemoryLimit();
 
-// Bytes for the cache of inputs: as asked, but never more than what `limit`
-// leaves beside `working_bytes` (the largest problem). Throws
-// Error(kOutOfResources), naming the option to change, if even the smallest
-// useful cache (`min_cache_bytes`, the inputs of one problem) does not fit.
+// Bytes for the cache of inputs: as asked, but not more than pays - the inputs
+// of one problem, of which the next shares most, or half a gibibyte - and never
+// more than what `limit` leaves beside `working_bytes` (the largest problem).
+// Throws Error(kOutOfResources), naming the option to change, if even the
+// smallest useful cache (`min_cache_bytes`, the inputs of one problem) does not
+// fit.
 uint64_t PlanCacheBytes(uint64_t asked_bytes,
                         uint64_t working_bytes,
                         uint64_t min_cache_bytes,

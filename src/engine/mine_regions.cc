@@ -4,8 +4,19 @@
 #include "src/prior/region_planes.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace hpm {
+namespace {
+
+// So that an image has about as many points as planes need, at any size.
+int LatticeStep(const HypothesisMap& map) {
+  constexpr double kNumPoints = 30000;
+  return std::max(1,
+                  static_cast<int>(std::sqrt(map.planes.size() / kNumPoints)));
+}
+
+}  // namespace
 
 std::vector<Plane> MineRegions(Backend* backend,
                                const ViewSet& views,
@@ -21,25 +32,28 @@ std::vector<Plane> MineRegions(Backend* backend,
   const WeakRegions regions = FindWeakRegions(
       *views.ref.image, params.region_max_gradient, params.region_min_share);
   if (regions.num_regions == 0) return {};
-  const FilterParams consistency = {-1, 0, params.region_max_error, 0};
+  const FilterParams consistency = {
+      -1, 0, params.region_max_error, 0, LatticeStep(map)};
   const std::vector<uint32_t> consistent =
       backend->ConsistentViews(map, consistency, true, control);
   const int needed =
       std::min(params.region_min_consistent, static_cast<int>(num_depths));
-  std::vector<float> inverse_depths(map.planes.size(), 0.0f);
-  for (int row = 0; row < map.height; ++row) {
-    for (int col = 0; col < map.width; ++col) {
+  std::vector<ReliablePoint> points;
+  for (int row = 0; row < map.height; row += consistency.step) {
+    for (int col = 0; col < map.width; col += consistency.step) {
       const size_t at = static_cast<size_t>(row) * map.width + col;
       if (__builtin_popcount(consistent[at]) < needed) continue;
-      inverse_depths[at] = 1 / DepthAt(views.ref.camera,
-                                       map.planes[at],
-                                       static_cast<float>(col),
-                                       static_cast<float>(row));
+      points.push_back({col,
+                        row,
+                        1 / DepthAt(views.ref.camera,
+                                    map.planes[at],
+                                    static_cast<float>(col),
+                                    static_cast<float>(row))});
     }
   }
   return MakeRegionPlanes(regions,
                           views.ref.camera,
-                          inverse_depths,
+                          points,
                           params.region_max_residual / Parallax(views),
                           {views.depth_min, views.depth_max},
                           CombineBits(views.random_key, key));

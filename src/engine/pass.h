@@ -51,6 +51,8 @@ struct Pass {
   int level = 0;  // kPrior: the prior is built on maps halved this many times
   bool median = true;                          // clean up at the end
   RegionPriors regions = RegionPriors::kNone;  // kGeometric only
+  int max_candidates = kNumRegions;  // regions that a visit looks into
+  int max_drawn_views = kMaxViews;   // and not more than of MethodParams
 };
 
 }  // namespace hpm

@@ -57,10 +57,13 @@ std::vector<int> PriorLevels(Priors priors, int num_levels) {
 // Appends the stages of one method, coarse to fine.
 class StageList {
  public:
-  StageList(const ScheduleOptions& options, std::vector<StageSpec>* stages)
-      : options_(options), stages_(stages) {}
+  StageList(const ScheduleOptions& options,
+            bool fast,
+            std::vector<StageSpec>* stages)
+      : options_(options), fast_(fast), stages_(stages) {}
 
   // Basic passes, then prior-assisted ones on the triangles of `prior_levels`.
+  // Without any pass the stage hands on what came up from the coarser level.
   void AddPhotometric(int level,
                       bool from_coarser,
                       int num_iterations,
@@ -68,11 +71,14 @@ class StageList {
     StageSpec stage;
     stage.level = level;
     stage.from_coarser = from_coarser;
-    stage.passes.push_back(
-        {PassKind::kBasic,
-         from_coarser ? StartFrom::kCurrent : StartFrom::kRandom,
-         num_iterations,
-         next_id_++});
+    const int id = next_id_++;
+    if (num_iterations > 0) {
+      stage.passes.push_back(
+          {PassKind::kBasic,
+           from_coarser ? StartFrom::kStored : StartFrom::kRandom,
+           num_iterations,
+           id});
+    }
     for (const int prior_level : prior_levels) {
       stage.passes.push_back({PassKind::kPrior,
                               StartFrom::kPrior,
@@ -92,12 +98,15 @@ class StageList {
                  options_.num_geom_iterations,
                  next_id_++};
     pass.regions = regions;
+    pass.max_candidates = fast_ ? 3 : 4;
+    if (fast_) pass.max_drawn_views = 3;
     stage.passes.push_back(pass);
     stages_->push_back(stage);
   }
 
  private:
   const ScheduleOptions& options_;
+  const bool fast_;
   std::vector<StageSpec>* stages_;
   int next_id_ = 0;
 };
@@ -118,20 +127,30 @@ void AddStages(const Method& method,
 }
 
 // Priors mined from what the views agree on, at every level of the images: a
-// coarse level sees walls that a fine one does not, and hands them down.
-void AddRegionStages(const Method& method,
+// coarse level sees walls that a fine one does not, and hands them down. There
+// everything is found; finer levels sharpen it.
+void AddRegionStages(bool fast,
                      const ScheduleOptions& options,
                      StageList* list) {
-  const bool fast = method.priors == Priors::kCoarsest;
-  const int num_geom_passes =
-      fast ? (options.num_geom_passes + 1) / 2 : options.num_geom_passes;
-  const int num_iterations =
-      fast ? std::max(1, options.num_iterations - 1) : options.num_iterations;
+  const bool geometric = options.num_geom_passes > 0;
   const int coarsest = options.num_levels - 1;
   for (int level = coarsest; level >= 0; --level) {
     const bool is_coarsest = level == coarsest;
-    list->AddPhotometric(
-        level, !is_coarsest, is_coarsest ? num_iterations : 1, {});
+    int num_iterations =
+        is_coarsest ? options.num_iterations : options.num_fine_iterations;
+    int num_geom_passes =
+        is_coarsest ? options.num_geom_passes : options.num_fine_geom_passes;
+    if (!geometric) {
+      num_iterations = std::max(1, num_iterations);
+      num_geom_passes = 0;
+    } else if (fast) {
+      num_iterations = is_coarsest ? std::max(1, num_iterations - 1) : 0;
+      num_geom_passes = (num_geom_passes + 1) / 2;
+      // The finer levels' passes go on where these end.
+      if (is_coarsest && level > 0)
+        num_geom_passes = std::max(1, num_geom_passes - 1);
+    }
+    list->AddPhotometric(level, !is_coarsest, num_iterations, {});
     for (int i = 0; i < num_geom_passes; ++i) {
       const bool last = level == 0 && i + 1 == num_geom_passes;
       list->AddGeometric(level,
@@ -153,11 +172,13 @@ Schedule MakeSchedule(const ScheduleOptions& options) {
     if (options.method != method.name) continue;
     Schedule schedule;
     schedule.pattern = MakeSamplingPattern(method.non_local, method.extensible);
-    StageList list(options, &schedule.stages);
-    const bool hierarchy =
-        method.priors == Priors::kCoarsest || method.priors == Priors::kAll;
-    if (hierarchy && options.region_priors) {
-      AddRegionStages(method, options, &list);
+    const bool regions =
+        options.region_priors &&
+        (method.priors == Priors::kCoarsest || method.priors == Priors::kAll);
+    const bool fast = regions && method.priors == Priors::kCoarsest;
+    StageList list(options, fast, &schedule.stages);
+    if (regions) {
+      AddRegionStages(fast, options, &list);
     } else {
       AddStages(method, options, &list);
     }

@@ -11,14 +11,18 @@ namespace hpm {
 
 struct ScheduleOptions {
   std::string method = "hpm";
-  int num_iterations = 3;       // of basic and prior passes
-  int num_geom_iterations = 2;  // of geometric passes
-  int num_geom_passes = 2;      // 0: photometric only
+  int num_iterations = 2;       // of basic and prior passes
+  int num_geom_iterations = 1;  // of geometric passes
+  int num_geom_passes = 3;      // 0: photometric only
   int num_levels = 1;           // of the prior hierarchy or the image pyramid
+  // With region priors, in place of num_iterations and num_geom_passes at
+  // levels finer than the coarsest.
+  int num_fine_iterations = 0;
+  int num_fine_geom_passes = 1;
   // hpm and hpm_fast mine planes of regions (src/engine/mine_regions.h) at
-  // every level of the images, hpm_fast with half the geometric passes and one
-  // iteration less at the coarsest; else triangles of credible points as the
-  // paper does.
+  // every level of the images, hpm_fast with half the geometric passes, one
+  // iteration less at the coarsest and none at finer levels; else triangles of
+  // credible points as the paper does.
   bool region_priors = true;
 };
 

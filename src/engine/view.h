@@ -3,6 +3,7 @@
 
 #include "src/core/camera.h"
 #include "src/image/gray_image.h"
+#include "src/image/inverse_depth_map.h"
 
 #include <cstdint>
 #include <memory>
@@ -13,9 +14,9 @@ namespace hpm {
 struct View {
   Camera camera;
   std::shared_ptr<const GrayImage> image;  // camera.width x camera.height
-  // Geometric passes: 1/z at pixel centres, row-major, 0 = none. Null: this
-  // view has no depth map and takes part photometrically only.
-  std::shared_ptr<const std::vector<float>> inverse_depth;
+  // Geometric passes. Null: this view has no depth map and takes part
+  // photometrically only.
+  std::shared_ptr<const InverseDepthMap> inverse_depth;
 };
 
 struct ViewSet {

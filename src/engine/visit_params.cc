@@ -3,6 +3,7 @@
 #include <algorithm>
 
 namespace hpm {
+
 float Parallax(const ViewSet& views) {
   float parallax = 0;
   for (const View& src : views.srcs) {
@@ -41,6 +42,8 @@ VisitParams ForPass(VisitParams visit,
                     const Pass& pass) {
   visit.geometric = pass.kind == PassKind::kGeometric;
   visit.search_near = visit.geometric;
+  visit.max_candidates = pass.max_candidates;
+  visit.max_drawn_views = std::min(visit.max_drawn_views, pass.max_drawn_views);
   if (pass.regions == RegionPriors::kStrong)
     visit.prior_term.gamma = params.region_gamma;
   return visit;

@@ -25,32 +25,27 @@ constexpr float kFarWeight = 1e-3f, kAnywhereWeight = 1e-6f;
 // A plane in the image: 1/z = x . (col, row, 1).
 using ImagePlane = Eigen::Vector3d;
 
-struct Point {
-  int col, row;
-  double inverse_depth;
-};
-
 struct SupportedPlane {
   ImagePlane plane;
-  std::vector<Point> support;
+  std::vector<ReliablePoint> support;
 };
 
-double Residual(const ImagePlane& plane, const Point& p) {
+double Residual(const ImagePlane& plane, const ReliablePoint& p) {
   return std::abs(plane.x() * p.col + plane.y() * p.row + plane.z() -
                   p.inverse_depth);
 }
 
 int CountSupport(const ImagePlane& plane,
-                 const std::vector<Point>& points,
+                 const std::vector<ReliablePoint>& points,
                  double tolerance) {
   int count = 0;
-  for (const Point& p : points) count += Residual(plane, p) < tolerance;
+  for (const ReliablePoint& p : points) count += Residual(plane, p) < tolerance;
   return count;
 }
 
-bool PlaneThrough(const Point& a,
-                  const Point& b,
-                  const Point& c,
+bool PlaneThrough(const ReliablePoint& a,
+                  const ReliablePoint& b,
+                  const ReliablePoint& c,
                   ImagePlane* plane) {
   Eigen::Matrix3d A;
   A << a.col, a.row, 1, b.col, b.row, 1, c.col, c.row, 1;
@@ -61,11 +56,11 @@ bool PlaneThrough(const Point& a,
 }
 
 ImagePlane Refit(const ImagePlane& plane,
-                 const std::vector<Point>& points,
+                 const std::vector<ReliablePoint>& points,
                  double tolerance) {
   Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
-  for (const Point& p : points) {
+  for (const ReliablePoint& p : points) {
     if (!(Residual(plane, p) < tolerance)) continue;
     const Eigen::Vector3d x(p.col, p.row, 1);
     A += x * x.transpose();
@@ -78,19 +73,19 @@ ImagePlane Refit(const ImagePlane& plane,
 }
 
 // The plane that most points support, refitted to them.
-ImagePlane BestPlane(const std::vector<Point>& points,
+ImagePlane BestPlane(const std::vector<ReliablePoint>& points,
                      double tolerance,
                      Rng* rng) {
   ImagePlane best = ImagePlane::Zero();
   int best_count = 0;
-  const auto draw = [&]() -> const Point& {
+  const auto draw = [&]() -> const ReliablePoint& {
     return points[static_cast<size_t>(rng->Uniform() *
                                       static_cast<float>(points.size() - 1))];
   };
   for (int i = 0; i < kNumDraws; ++i) {
-    const Point& a = draw();
-    const Point& b = draw();
-    const Point& c = draw();
+    const ReliablePoint& a = draw();
+    const ReliablePoint& b = draw();
+    const ReliablePoint& c = draw();
     ImagePlane plane;
     if (!PlaneThrough(a, b, c, &plane)) continue;
     const int count = CountSupport(plane, points, tolerance);
@@ -103,7 +98,7 @@ ImagePlane BestPlane(const std::vector<Point>& points,
   return best;
 }
 
-std::vector<SupportedPlane> FindPlanes(std::vector<Point> points,
+std::vector<SupportedPlane> FindPlanes(std::vector<ReliablePoint> points,
                                        double tolerance,
                                        Rng* rng) {
   std::vector<SupportedPlane> planes;
@@ -111,8 +106,8 @@ std::vector<SupportedPlane> FindPlanes(std::vector<Point> points,
       std::max<double>(kMinPoints, kMinSupport * points.size());
   while (planes.size() < kMaxPlanes && points.size() >= min_support) {
     SupportedPlane found = {BestPlane(points, tolerance, rng), {}};
-    std::vector<Point> rest;
-    for (const Point& p : points) {
+    std::vector<ReliablePoint> rest;
+    for (const ReliablePoint& p : points) {
       (Residual(found.plane, p) < tolerance ? found.support : rest)
           .push_back(p);
     }
@@ -130,7 +125,7 @@ cv::Mat SupportDensity(const SupportedPlane& plane,
                        int cell_cols,
                        int cell_rows) {
   cv::Mat count = cv::Mat::zeros(cell_rows, cell_cols, CV_32F);
-  for (const Point& p : plane.support)
+  for (const ReliablePoint& p : plane.support)
     count.at<float>(p.row / cell, p.col / cell) += 1;
   cv::Mat near, far;
   cv::GaussianBlur(count, near, cv::Size(), kNearCells);
@@ -152,19 +147,17 @@ Plane ToPlane(const Camera& camera, const ImagePlane& plane) {
 
 std::vector<Plane> MakeRegionPlanes(const WeakRegions& regions,
                                     const Camera& camera,
-                                    const std::vector<float>& inverse_depths,
+                                    const std::vector<ReliablePoint>& points,
                                     float tolerance,
                                     const PriorRange& range,
                                     uint64_t random_key) {
   const int width = regions.width, height = regions.height;
   std::vector<Plane> result(regions.label.size(), Plane{{0, 0, 0}, 0});
-  std::vector<std::vector<Point>> points(regions.num_regions + 1);
-  for (int row = 0; row < height; ++row) {
-    for (int col = 0; col < width; ++col) {
-      const size_t at = static_cast<size_t>(row) * width + col;
-      if (regions.label[at] == 0 || !(inverse_depths[at] > 0)) continue;
-      points[regions.label[at]].push_back({col, row, inverse_depths[at]});
-    }
+  std::vector<std::vector<ReliablePoint>> of_region(regions.num_regions + 1);
+  for (const ReliablePoint& point : points) {
+    const int label =
+        regions.label[static_cast<size_t>(point.row) * width + point.col];
+    if (label > 0) of_region[label].push_back(point);
   }
   const int cell = std::max(1, std::max(width, height) / kCellsPerSide);
   const int cell_cols = (width - 1) / cell + 1;
@@ -174,7 +167,7 @@ std::vector<Plane> MakeRegionPlanes(const WeakRegions& regions,
   std::vector<cv::Mat> choice(regions.num_regions + 1);
   for (int label = 1; label <= regions.num_regions; ++label) {
     Rng rng(random_key, label, 0);
-    std::vector<Point>& own = points[label];
+    std::vector<ReliablePoint>& own = of_region[label];
     for (size_t i = 0; own.size() > kMaxPoints && i < kMaxPoints; ++i) {
       // Partial Fisher-Yates shuffle.
       const size_t j =

@@ -11,14 +11,19 @@
 
 namespace hpm {
 
+// A pixel whose depth several views agree on.
+struct ReliablePoint {
+  int col, row;
+  float inverse_depth;  // 1/z
+};
+
 // One plane per pixel, reference camera frame, distance 0 = none.
-// `inverse_depths`: 1/z where the map is reliable, else 0. A point supports a
-// plane if their 1/z differ by less than `tolerance`. Regions get up to four
-// planes, found one after the other by RANSAC; a pixel takes the plane with
-// the densest support around it.
+// A point supports a plane if their 1/z differ by less than `tolerance`.
+// Regions get up to four planes, found one after the other by RANSAC; a pixel
+// takes the plane with the densest support around it.
 std::vector<Plane> MakeRegionPlanes(const WeakRegions& regions,
                                     const Camera& camera,
-                                    const std::vector<float>& inverse_depths,
+                                    const std::vector<ReliablePoint>& points,
                                     float tolerance,
                                     const PriorRange& range,
                                     uint64_t random_key);

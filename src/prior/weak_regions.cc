@@ -7,6 +7,17 @@ namespace {
 
 constexpr double kBlur = 1.0;  // pixels
 
+// Of the blurred image, grey levels per pixel.
+cv::Mat GradientOf(const cv::Mat& gray) {
+  cv::Mat blurred, dx, dy;
+  gray.convertTo(blurred, CV_32F);
+  cv::GaussianBlur(blurred, blurred, cv::Size(), kBlur);
+  cv::Sobel(blurred, dx, CV_32F, 1, 0, 3, 1.0 / 8);
+  cv::Sobel(blurred, dy, CV_32F, 0, 1, 3, 1.0 / 8);
+  cv::magnitude(dx, dy, dx);
+  return dx;
+}
+
 }  // namespace
 
 WeakRegions FindWeakRegions(const GrayImage& image,
@@ -19,16 +30,10 @@ WeakRegions FindWeakRegions(const GrayImage& image,
                      image.width,
                      CV_8U,
                      const_cast<uint8_t*>(image.data.data()));
-  cv::Mat blurred, dx, dy, magnitude;
-  gray.convertTo(blurred, CV_32F);
-  cv::GaussianBlur(blurred, blurred, cv::Size(), kBlur);
-  cv::Sobel(blurred, dx, CV_32F, 1, 0, 3, 1.0 / 8);
-  cv::Sobel(blurred, dy, CV_32F, 0, 1, 3, 1.0 / 8);
-  cv::magnitude(dx, dy, magnitude);
+  cv::Mat weak = GradientOf(gray) < max_gradient;
   // Eroded before and grown after the labelling, so that gaps one pixel wide in
   // an edge do not join what lies on its sides.
   const cv::Mat element = cv::getStructuringElement(cv::MORPH_RECT, {3, 3});
-  cv::Mat weak = magnitude < max_gradient;
   cv::erode(weak, weak, element);
   cv::Mat labels, statistics, centroids;
   const int num_labels = cv::connectedComponentsWithStats(
@@ -39,20 +44,21 @@ WeakRegions FindWeakRegions(const GrayImage& image,
     if (statistics.at<int>(i, cv::CC_STAT_AREA) >= min_area)
       name[i] = ++regions.num_regions;
   }
-  cv::Mat kept(image.height, image.width, CV_32F);
+  cv::Mat kept(image.height, image.width, CV_16U);
   for (int row = 0; row < image.height; ++row) {
     for (int col = 0; col < image.width; ++col)
-      kept.at<float>(row, col) =
-          static_cast<float>(name[labels.at<int>(row, col)]);
+      kept.at<uint16_t>(row, col) =
+          static_cast<uint16_t>(name[labels.at<int>(row, col)]);
   }
+  labels.release();
   cv::Mat grown;
   cv::dilate(kept, grown, element);
   regions.label.resize(image.data.size());
   for (int row = 0; row < image.height; ++row) {
     for (int col = 0; col < image.width; ++col) {
-      const float own = kept.at<float>(row, col);
+      const uint16_t own = kept.at<uint16_t>(row, col);
       regions.label[static_cast<size_t>(row) * image.width + col] =
-          static_cast<int>(own > 0 ? own : grown.at<float>(row, col));
+          own > 0 ? own : grown.at<uint16_t>(row, col);
     }
   }
   return regions;

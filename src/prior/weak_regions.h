@@ -4,6 +4,7 @@
 
 #include "src/image/gray_image.h"
 
+#include <cstdint>
 #include <vector>
 
 namespace hpm {
@@ -11,7 +12,7 @@ namespace hpm {
 struct WeakRegions {
   int width = 0, height = 0;
   int num_regions = 0;
-  std::vector<int> label;  // row-major, 0 = textured, regions from 1
+  std::vector<uint16_t> label;  // row-major, 0 = textured, regions from 1
 };
 
 // Pixels whose gradient, after a slight blur against noise, stays under

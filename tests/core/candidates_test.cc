@@ -14,8 +14,9 @@ namespace hpm {
 namespace {
 
 bool Extends(const std::vector<float>& costs, int iteration, int extension) {
-  return MustExtend(
-      costs.data(), static_cast<int>(costs.size()), iteration, extension);
+  return MustExtend(costs.data(),
+                    static_cast<int>(costs.size()),
+                    ConvincingCost(iteration, extension));
 }
 
 // Specification 5.3: tau = 0.8 exp(-iteration^2 (3 - extension) / 90).
@@ -115,6 +116,7 @@ class CollectCandidatesTest : public testing::Test {
       planes_[i] = {{0, 0, -1}, static_cast<float>(i)};
     }
     params_.num_views = 2;
+    params_.max_candidates = kNumRegions;
   }
 
   static int Index(int col, int row) { return row * kSide + col; }
@@ -185,6 +187,23 @@ TEST_F(CollectCandidatesTest, MatrixHoldsTheCostOfEachCandidateInEachView) {
                 cost.photometric(candidates.plane[i], j));
     }
   }
+}
+
+TEST_F(CollectCandidatesTest, LooksIntoTheRegionsOfSmallestCostOnly) {
+  params_.max_candidates = 3;
+  for (const int k : {1, 2, 3}) {
+    costs_[Index(kMiddle, kMiddle - 5 - 2 * k)] = 0.3f + 0.1f * k;  // up
+    costs_[Index(kMiddle + 5 + 2 * k, kMiddle)] = 0.4f + 0.1f * k;  // right
+    costs_[Index(kMiddle - 5 - 2 * k, kMiddle)] = 0.5f + 0.1f * k;  // left
+    costs_[Index(kMiddle, kMiddle + 5 + 2 * k)] = 0.6f + 0.1f * k;  // down
+  }
+  convincing_.num_evaluations = 0;
+  const Candidates candidates = Collect(false, convincing_);
+  EXPECT_EQ(__builtin_popcount(candidates.exists), 3);
+  EXPECT_TRUE(Proposes(candidates, kMiddle, kMiddle - 7));
+  EXPECT_TRUE(Proposes(candidates, kMiddle + 7, kMiddle));
+  EXPECT_TRUE(Proposes(candidates, kMiddle - 7, kMiddle));
+  EXPECT_EQ(convincing_.num_evaluations, 3 * candidates.num_views);
 }
 
 TEST_F(CollectCandidatesTest, RegionsOutsideTheImageDoNotExist) {

@@ -14,7 +14,7 @@ struct DeviceViews {
   Camera ref;
   const unsigned char* ref_image;
   const unsigned char* const* src_images;
-  const float* const* inverse_depths;
+  const InverseDepths* inverse_depths;
   const ViewWarp* to_src;
   const ViewWarp* to_ref;
   PatchShape shape;
@@ -63,28 +63,23 @@ struct DeviceCost {
   }
 
   __device__ bool HasDepth(int view) const {
-    return views.inverse_depths[view] != nullptr;
+    return views.inverse_depths[view].steps != nullptr;
   }
 
-  __device__ float GeometricError(const Plane& plane, int view) const {
-    const float* inverse_depth = views.inverse_depths[view];
+  __device__ float GeometricError(const PlaneSlope& slope, int view) const {
+    const InverseDepths inverse_depths = views.inverse_depths[view];
     const int width = views.to_src[view].width;
     const int height = views.to_src[view].height;
-    return ReprojectionError(
-        views.to_src[view],
-        views.to_ref[view],
-        SlopeOf(views.ref, plane),
-        static_cast<float>(col),
-        static_cast<float>(row),
-        5.0f,
-        [&](float u, float v) {
-          return InterpolateInverseDepth(
-              [&](int c, int r) { return inverse_depth[r * width + c]; },
-              width,
-              height,
-              u,
-              v);
-        });
+    return ReprojectionError(views.to_src[view],
+                             views.to_ref[view],
+                             slope,
+                             static_cast<float>(col),
+                             static_cast<float>(row),
+                             5.0f,
+                             [&](float u, float v) {
+                               return InterpolateInverseDepth(
+                                   inverse_depths, width, height, u, v);
+                             });
   }
 };
 

@@ -2,6 +2,8 @@
 
 #include "tests/core/test_cameras.h"
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <vector>
 
@@ -37,27 +39,37 @@ Plane Moved(const Camera& from, const Camera& to, const Plane& plane) {
   return {normal, plane.distance - Dot(normal, t)};
 }
 
-// Inverse depth map of a plane, at pixel centres.
-std::vector<float> InverseDepthMap(const Camera& camera, const Plane& plane) {
-  std::vector<float> map;
+// Three bytes each, one behind the last; see InverseDepths.
+std::vector<uint8_t> Packed(const std::vector<uint32_t>& steps) {
+  std::vector<uint8_t> bytes;
+  for (const uint32_t s : steps) {
+    for (const int shift : {0, 8, 16})
+      bytes.push_back(static_cast<uint8_t>(s >> shift));
+  }
+  bytes.push_back(0xff);
+  return bytes;
+}
+
+// Inverse depths of a plane at pixel centres.
+constexpr float kStep = 1e-7f;
+
+std::vector<uint8_t> InverseDepthsOf(const Camera& camera, const Plane& plane) {
+  std::vector<uint32_t> steps;
   for (int row = 0; row < camera.height; ++row) {
     for (int col = 0; col < camera.width; ++col) {
-      map.push_back(
-          static_cast<float>(1 / PointOn(camera, plane, col, row).z()));
+      const double z = PointOn(camera, plane, col, row).z();
+      steps.push_back(
+          z > 0.6 ? static_cast<uint32_t>(std::lround(1 / z / kStep)) : 0);
     }
   }
-  return map;
+  return Packed(steps);
 }
 
 InverseDepthFunction LookUp(const Camera& camera,
-                            const std::vector<float>& map) {
+                            const std::vector<uint8_t>& map) {
   return [&camera, &map](float u, float v) {
     return InterpolateInverseDepth(
-        [&](int c, int r) { return map[r * camera.width + c]; },
-        camera.width,
-        camera.height,
-        u,
-        v);
+        {map.data(), kStep}, camera.width, camera.height, u, v);
   };
 }
 
@@ -71,7 +83,7 @@ TEST(ReprojectionError, IsZeroOnExactPlanesForAnyPairOfCameras) {
     const Plane plane = PlaneFromDepth(ref, ref.cx, ref.cy, 5, normal);
     const Plane there = Moved(ref, src, plane);
     if (there.distance < 1) continue;
-    const std::vector<float> map = InverseDepthMap(src, there);
+    const std::vector<uint8_t> map = InverseDepthsOf(src, there);
     for (int row = 0; row < ref.height; row += 23) {
       for (int col = 0; col < ref.width; col += 23) {
         const Eigen::Vector3d point = PointOn(ref, plane, col, row);
@@ -143,10 +155,10 @@ TEST(ReprojectionError, IsTheCapWithoutDepthOrView) {
 class Interpolation : public testing::Test {
  protected:
   float At(float u, float v) const {
-    return InterpolateInverseDepth(
-        [&](int c, int r) { return map_[r * 3 + c]; }, 3, 2, u, v);
+    return InterpolateInverseDepth({map_.data(), 1e-6f}, 3, 2, u, v);
   }
-  float map_[6] = {0.200f, 0.201f, 0.100f, 0.202f, 0.203f, 0.101f};
+  std::vector<uint8_t> map_ =
+      Packed({200000, 201000, 100000, 202000, 203000, 101000});
 };
 
 TEST_F(Interpolation, IsBilinearOnOneSurface) {
@@ -162,7 +174,7 @@ TEST_F(Interpolation, TakesTheNearestPixelAcrossAStep) {
 }
 
 TEST_F(Interpolation, NeverMixesInMissingDepth) {
-  map_[4] = 0;
+  std::fill_n(map_.begin() + 4 * 3, 3, uint8_t{0});
   EXPECT_FLOAT_EQ(At(0.3f, 0.3f), 0.200f);
   EXPECT_FLOAT_EQ(At(0.9f, 0.9f), 0);
 }

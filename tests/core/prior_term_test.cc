@@ -19,40 +19,32 @@ double Posterior(double cost, double dz, double angle) {
                     std::exp(-angle * angle / (2 * 0.0872665 * 0.0872665)));
 }
 
-TEST(LogPosterior, IsTheLogarithmOfTheSpecifiedProduct) {
+TEST(PriorBonus, MinusTheSquaredCostIsTheLogarithmOfThePosterior) {
   for (const float cost : {0.0f, 0.1f, 0.7f}) {
     for (const float dz : {0.0f, 0.05f, -0.2f}) {
       for (const float angle : {0.0f, 0.05f, 0.2f}) {
-        EXPECT_NEAR(
-            LogPosterior(kTerm, cost, 3 + dz, TurnedBy(angle), 3, kNormal),
-            std::log(Posterior(cost, dz, angle)),
-            2e-4);
+        const float bonus =
+            PriorBonus(kTerm, 3 + dz, TurnedBy(angle), 3, kNormal);
+        EXPECT_NEAR((bonus - cost * cost) / kTerm.beta,
+                    std::log(Posterior(cost, dz, angle)),
+                    2e-4);
       }
     }
   }
 }
 
-TEST(LogPosterior, IsLargestOnThePrior) {
-  const float best = LogPosterior(kTerm, 0.3f, 3, kNormal, 3, kNormal);
-  EXPECT_GT(best, LogPosterior(kTerm, 0.3f, 3.02f, kNormal, 3, kNormal));
-  EXPECT_GT(best, LogPosterior(kTerm, 0.3f, 2.98f, kNormal, 3, kNormal));
-  EXPECT_GT(best, LogPosterior(kTerm, 0.3f, 3, TurnedBy(0.02f), 3, kNormal));
-}
-
-TEST(LogPosterior, FallsWithTheCostEvenWhereTheProductWouldUnderflow) {
-  float before = LogPosterior(kTerm, 0, 3, kNormal, 3, kNormal);
-  for (float cost = 0.1f; cost < 6; cost += 0.1f) {
-    const float here = LogPosterior(kTerm, cost, 3, kNormal, 3, kNormal);
-    EXPECT_LT(here, before);
-    before = here;
-  }
+TEST(PriorBonus, IsLargestOnThePrior) {
+  const float best = PriorBonus(kTerm, 3, kNormal, 3, kNormal);
+  EXPECT_GT(best, PriorBonus(kTerm, 3.02f, kNormal, 3, kNormal));
+  EXPECT_GT(best, PriorBonus(kTerm, 2.98f, kNormal, 3, kNormal));
+  EXPECT_GT(best, PriorBonus(kTerm, 3, TurnedBy(0.02f), 3, kNormal));
 }
 
 // The prior can make up for a limited difference in cost only.
-TEST(LogPosterior, PriorChangesTheProbabilityByAFactorOfThreeAtMost) {
-  const float on = LogPosterior(kTerm, 0.2f, 3, kNormal, 3, kNormal);
-  const float off = LogPosterior(kTerm, 0.2f, 30, TurnedBy(1.5f), 3, kNormal);
-  EXPECT_NEAR(on - off, std::log(3.0f), 1e-5);
+TEST(PriorBonus, ChangesTheProbabilityByAFactorOfThreeAtMost) {
+  const float on = PriorBonus(kTerm, 3, kNormal, 3, kNormal);
+  const float off = PriorBonus(kTerm, 30, TurnedBy(1.5f), 3, kNormal);
+  EXPECT_NEAR(on - off, kTerm.beta * std::log(3.0f), 1e-6);
 }
 
 TEST(AngleBetween, SurvivesDotProductsBeyondOne) {

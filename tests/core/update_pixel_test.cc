@@ -37,6 +37,7 @@ class UpdatePixelTest : public testing::Test {
     params_.depth_max = 6;
     params_.num_view_draws = 15;
     params_.max_drawn_views = 32;
+    params_.max_candidates = kNumRegions;
     params_.depth_perturbation = 0.02f;
     params_.normal_perturbation = 0.0314f;
     params_.geometric_term = {0.1f, 5};
@@ -155,8 +156,10 @@ TEST_F(UpdatePixelTest, GeometricTermDecidesBetweenEqualCosts) {
   SetAt(9, 0, {{0, 0, -1}, kTrueDepth}, 0.05f);
   const FakeCost cost = {
       [](const Plane&, int) { return 0.5f; },
-      [](const Plane& plane, int) {
-        return std::fmin(5.0f, 20 * std::abs(plane.distance - kTrueDepth));
+      [](const PlaneSlope& slope, int) {
+        const float depth =
+            -1 / ((slope.col + slope.row) * kMiddle + slope.constant);
+        return std::fmin(5.0f, 20 * std::abs(depth - kTrueDepth));
       }};
   Visit(cost);
   EXPECT_NEAR(CostHere(), 0.5f, 0.01f);

@@ -34,7 +34,7 @@ class CpuBackendTest : public testing::Test {
         inverse.push_back(1 / z);
       }
       views.srcs[j].inverse_depth =
-          std::make_shared<const std::vector<float>>(std::move(inverse));
+          std::make_shared<const InverseDepthMap>(InverseDepthMap::Of(inverse));
     }
     return views;
   }

@@ -45,24 +45,11 @@ void Compare(const CpuTarget& target,
   const float nan = std::numeric_limits<float>::quiet_NaN();
   std::vector<float> expected(planes.size() * views.size() + 1, nan);
   std::vector<float> actual = expected;
-  FindCpuTarget("scalar").match_cost(cpu_views.match(),
-                                     patch,
-                                     col,
-                                     row,
-                                     planes.data(),
-                                     num_planes,
-                                     views.data(),
-                                     num_views,
-                                     expected.data());
-  target.match_cost(cpu_views.match(),
-                    patch,
-                    col,
-                    row,
-                    planes.data(),
-                    num_planes,
-                    views.data(),
-                    num_views,
-                    actual.data());
+  const MatchRequest request = {
+      col, row, planes.data(), num_planes, views.data(), num_views};
+  FindCpuTarget("scalar").match_cost(
+      cpu_views.match(), patch, request, expected.data());
+  target.match_cost(cpu_views.match(), patch, request, actual.data());
   EXPECT_TRUE(std::isnan(actual.back()));  // written behind the last pair
   for (size_t i = 0; i + 1 < actual.size(); ++i) {
     ASSERT_GE(actual[i], 0);  // false for NaN
@@ -184,15 +171,11 @@ TEST_P(EveryTarget, NonsensePlanesCostTheMaximum) {
                                      {{0, 0, -1}, -5}};
   const std::vector<uint8_t> views = {0, 1};
   std::vector<float> costs(planes.size() * 2);
-  GetParam().match_cost(cpu_views.match(),
-                        cpu_views.PatchAt(30, 20),
-                        30,
-                        20,
-                        planes.data(),
-                        static_cast<int>(planes.size()),
-                        views.data(),
-                        2,
-                        costs.data());
+  GetParam().match_cost(
+      cpu_views.match(),
+      cpu_views.PatchAt(30, 20),
+      {30, 20, planes.data(), static_cast<int>(planes.size()), views.data(), 2},
+      costs.data());
   EXPECT_THAT(costs, testing::Each(kMaxCost));
 }
 

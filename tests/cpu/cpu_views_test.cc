@@ -139,9 +139,9 @@ TEST(CpuPixelCost, GeometricErrorIsThatOfTheSourcesDepth) {
   std::vector<float> inverse;
   for (const float z : rendered[1].truth.depth) inverse.push_back(1 / z);
   set.srcs[0].inverse_depth =
-      std::make_shared<const std::vector<float>>(std::move(inverse));
-  set.srcs[1].inverse_depth =
-      std::make_shared<const std::vector<float>>(60 * 44, 0.0f);
+      std::make_shared<const InverseDepthMap>(InverseDepthMap::Of(inverse));
+  set.srcs[1].inverse_depth = std::make_shared<const InverseDepthMap>(
+      InverseDepthMap::Of(std::vector<float>(60 * 44, 0.0f)));
   const CpuViews cpu_views(set, MethodParams());
   const CpuPixelCost cost(
       cpu_views, FindCpuTarget("auto").match_cost, 5, 30, 22);
@@ -153,12 +153,12 @@ TEST(CpuPixelCost, GeometricErrorIsThatOfTheSourcesDepth) {
                                      rendered[0].truth.normals[at]);
   Plane off = truth;
   off.distance *= 1.05f;
-  EXPECT_LT(cost.GeometricError(truth, 0), 1e-2);
-  EXPECT_GT(cost.GeometricError(off, 0), 0.1);
+  EXPECT_LT(cost.GeometricError(SlopeOf(set.ref.camera, truth), 0), 1e-2);
+  EXPECT_GT(cost.GeometricError(SlopeOf(set.ref.camera, off), 0), 0.1);
   // A map without depth here speaks against the hypothesis; a view without a
   // map has no say.
-  EXPECT_EQ(cost.GeometricError(truth, 1), 5);
-  EXPECT_EQ(cost.GeometricError(truth, 2), 0);
+  EXPECT_EQ(cost.GeometricError(SlopeOf(set.ref.camera, truth), 1), 5);
+  EXPECT_EQ(cost.GeometricError(SlopeOf(set.ref.camera, truth), 2), 0);
 }
 
 }  // namespace

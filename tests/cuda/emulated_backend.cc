@@ -136,8 +136,8 @@ void EmulatedBackend::SetViews(const ViewSet& views,
     texels_.push_back(std::move(texels));
     tables_.views[j].texels = texels_.back().data();
     inverse_depths_.push_back(views_.srcs[j].inverse_depth
-                                  ? views_.srcs[j].inverse_depth->data()
-                                  : nullptr);
+                                  ? views_.srcs[j].inverse_depth->View()
+                                  : InverseDepths{nullptr, 0});
   }
   DeviceProblem& problem = tables_.problem;
   problem.ref_grey = views_.ref.image->data.data();

@@ -60,7 +60,7 @@ class GpuTest : public testing::Test {
         inverse.push_back(z > 0 ? 1 / z : 0);
       }
       views.srcs[j].inverse_depth =
-          std::make_shared<const std::vector<float>>(std::move(inverse));
+          std::make_shared<const InverseDepthMap>(InverseDepthMap::Of(inverse));
     }
     views.srcs[3].inverse_depth = nullptr;
     View& cropped = views.srcs[4];

@@ -70,9 +70,9 @@ INSTANTIATE_TEST_SUITE_P(
       return std::get<0>(test.param) + "_" + std::get<1>(test.param);
     });
 
-TEST_P(EverySceneOnEveryTarget, NespWithAGeometricPassIsAccurate) {
+TEST_P(EverySceneOnEveryTarget, NespWithGeometricPassesIsAccurate) {
   const auto& [scene, target] = GetParam();
-  ExpectAccurate(target, scene, Size(160, 120, 7), Method("nesp", 1));
+  ExpectAccurate(target, scene, Size(160, 120, 7), Method("nesp", 2));
 }
 
 // Small enough for the readable target and for emulators.
@@ -84,7 +84,7 @@ INSTANTIATE_TEST_SUITE_P(Accuracy,
 
 TEST_P(SmallScene, IsAccurate) {
   ExpectAccurate(
-      GetParam().name, "tilted_plane", Size(48, 36, 5), Method("nesp", 1));
+      GetParam().name, "tilted_plane", Size(48, 36, 5), Method("nesp", 2));
 }
 
 }  // namespace

@@ -12,16 +12,26 @@ constexpr uint64_t kMegabyte = 1 << 20;
 constexpr uint64_t kGigabyte = 1 << 30;
 
 TEST(PlanCacheBytes, GivesWhatIsAskedWhereItFits) {
+  EXPECT_EQ(PlanCacheBytes(
+                300 * kMegabyte, kGigabyte, 100 * kMegabyte, 16 * kGigabyte),
+            300 * kMegabyte);
+}
+
+// So that memory does not grow with the number of images.
+TEST(PlanCacheBytes, GivesNoMoreThanPays) {
+  EXPECT_EQ(PlanCacheBytes(
+                32 * kGigabyte, kGigabyte, 100 * kMegabyte, 64 * kGigabyte),
+            512 * kMegabyte);
   EXPECT_EQ(
-      PlanCacheBytes(2 * kGigabyte, kGigabyte, 100 * kMegabyte, 16 * kGigabyte),
-      2 * kGigabyte);
+      PlanCacheBytes(32 * kGigabyte, kGigabyte, 3 * kGigabyte, 64 * kGigabyte),
+      3 * kGigabyte);
 }
 
 TEST(PlanCacheBytes, GivesNoMoreThanTheLimitLeaves) {
-  const uint64_t cache =
-      PlanCacheBytes(32 * kGigabyte, kGigabyte, 100 * kMegabyte, 4 * kGigabyte);
-  EXPECT_LT(cache, 3 * kGigabyte);
-  EXPECT_GT(cache, 2 * kGigabyte);
+  const uint64_t cache = PlanCacheBytes(
+      32 * kGigabyte, 3500 * kMegabyte, 100 * kMegabyte, 4 * kGigabyte);
+  EXPECT_LT(cache, 500 * kMegabyte);
+  EXPECT_GT(cache, 300 * kMegabyte);
 }
 
 TEST(PlanCacheBytes, GivesNoLessThanOneProblemNeeds) {

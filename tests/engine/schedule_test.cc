@@ -132,7 +132,33 @@ TEST(Schedule, RegionsAreMinedOnImagesOfEveryLevel) {
     levels.push_back(stage.level);
     EXPECT_EQ(stage.from_coarser, !stage.geometric && stage.level < 2);
   }
-  EXPECT_THAT(levels, testing::ElementsAre(2, 2, 2, 1, 1, 1, 0, 0, 0));
+  EXPECT_THAT(levels, testing::ElementsAre(2, 2, 2, 1, 1, 0, 0));
+}
+
+TEST(Schedule, FinerLevelsHaveNumbersOfTheirOwn) {
+  ScheduleOptions options = Options("hpm", 2);
+  options.num_fine_geom_passes = 3;
+  const auto fine_stage = [&options] {
+    const Schedule schedule = MakeSchedule(options);
+    EXPECT_EQ(schedule.stages.size(), 3u + 1 + 3);
+    EXPECT_EQ(schedule.stages[0].passes[0].num_iterations, 4);
+    return schedule.stages[3];
+  };
+  EXPECT_THAT(fine_stage().passes, testing::IsEmpty());
+  options.num_fine_iterations = 2;
+  ASSERT_EQ(fine_stage().passes.size(), 1u);
+  EXPECT_EQ(fine_stage().passes[0].num_iterations, 2);
+  // What came up keeps the cost it has been given.
+  EXPECT_EQ(fine_stage().passes[0].start, StartFrom::kStored);
+}
+
+TEST(Schedule, WithoutGeometricPassesFinerLevelsMatch) {
+  ScheduleOptions options = Options("hpm", 2);
+  options.num_geom_passes = 0;
+  const Schedule schedule = MakeSchedule(options);
+  ASSERT_EQ(schedule.stages.size(), 2u);
+  ASSERT_EQ(schedule.stages[1].passes.size(), 1u);
+  EXPECT_EQ(schedule.stages[1].passes[0].num_iterations, 1);
 }
 
 TEST(Schedule, OnlyTheLastPassHasStrongRegionPriors) {
@@ -149,7 +175,7 @@ TEST(Schedule, HpmFastTakesFewerPassesAndIterations) {
   const auto num_stages = [](const std::string& method) {
     return MakeSchedule(Options(method)).stages.size();
   };
-  EXPECT_EQ(num_stages("hpm"), 9u);  // three levels
+  EXPECT_EQ(num_stages("hpm"), 7u);  // three levels
   EXPECT_EQ(num_stages("hpm_fast"), 6u);
   const auto num_iterations = [](const std::string& method) {
     return MakeSchedule(Options(method))
@@ -158,6 +184,11 @@ TEST(Schedule, HpmFastTakesFewerPassesAndIterations) {
         .num_iterations;
   };
   EXPECT_EQ(num_iterations("hpm_fast"), num_iterations("hpm") - 1);
+  const auto last = [](const std::string& method) {
+    return MakeSchedule(Options(method)).stages.back().passes.back();
+  };
+  EXPECT_LT(last("hpm_fast").max_candidates, last("hpm").max_candidates);
+  EXPECT_LT(last("hpm_fast").max_drawn_views, last("hpm").max_drawn_views);
 }
 
 TEST(Schedule, NespHasNoPriors) {

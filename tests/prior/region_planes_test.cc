@@ -19,26 +19,27 @@ class RegionPlanesTest : public testing::Test {
   // where `reliable(col, row)`.
   RegionPlanesTest()
       : camera_(PriorCamera(kWidth, kHeight)),
-        regions_{kWidth, kHeight, 1, std::vector<int>(kWidth * kHeight, 1)},
-        inverse_depths_(kWidth * kHeight, 0.0f) {}
+        regions_{
+            kWidth, kHeight, 1, std::vector<uint16_t>(kWidth * kHeight, 1)} {}
 
   template <class Reliable>
   void Support(const Plane& plane, const Reliable& reliable) {
     for (int row = 0; row < kHeight; ++row) {
       for (int col = 0; col < kWidth; ++col) {
         if (!reliable(col, row)) continue;
-        inverse_depths_[row * kWidth + col] =
-            1 / DepthAt(camera_,
-                        plane,
-                        static_cast<float>(col),
-                        static_cast<float>(row));
+        points_.push_back({col,
+                           row,
+                           1 / DepthAt(camera_,
+                                       plane,
+                                       static_cast<float>(col),
+                                       static_cast<float>(row))});
       }
     }
   }
 
   std::vector<Plane> Make(uint64_t key = 1) const {
     return MakeRegionPlanes(
-        regions_, camera_, inverse_depths_, kTolerance, kRange, key);
+        regions_, camera_, points_, kTolerance, kRange, key);
   }
 
   void ExpectPlane(const std::vector<Plane>& planes,
@@ -54,7 +55,7 @@ class RegionPlanesTest : public testing::Test {
 
   Camera camera_;
   WeakRegions regions_;
-  std::vector<float> inverse_depths_;
+  std::vector<ReliablePoint> points_;
 };
 
 TEST_F(RegionPlanesTest, ReachFromOneCornerOverTheWholeRegion) {
@@ -66,8 +67,8 @@ TEST_F(RegionPlanesTest, ReachFromOneCornerOverTheWholeRegion) {
 
 TEST_F(RegionPlanesTest, AFifthOfFalsePointsDoesNotBendThePlane) {
   Support(TiltedPlane(), [](int, int) { return true; });
-  for (size_t i = 0; i < inverse_depths_.size(); i += 5)
-    inverse_depths_[i] *= 1.05f + 0.3f * static_cast<float>(i % 7);
+  for (size_t i = 0; i < points_.size(); i += 5)
+    points_[i].inverse_depth *= 1.05f + 0.3f * static_cast<float>(i % 7);
   ExpectPlane(Make(), TiltedPlane(), 80, 60);
 }
 
@@ -95,8 +96,11 @@ TEST_F(RegionPlanesTest, TooLittleOrScatteredSupportGivesNoPlane) {
   Support(TiltedPlane(), [](int col, int row) { return col < 6 && row < 6; });
   EXPECT_EQ(Make()[0].distance, 0);
   // No twelfth of these lies on one plane.
-  for (size_t i = 0; i < inverse_depths_.size(); ++i)
-    inverse_depths_[i] = 0.1f + 0.9f * std::fmod(0.618034f * i, 1.0f);
+  Support(TiltedPlane(), [](int, int) { return true; });
+  for (size_t i = 0; i < points_.size(); ++i) {
+    points_[i].inverse_depth =
+        0.1f + 0.9f * std::fmod(0.618034f * static_cast<float>(i), 1.0f);
+  }
   EXPECT_EQ(Make()[0].distance, 0);
 }
 
@@ -108,8 +112,8 @@ TEST_F(RegionPlanesTest, PixelsOnOneLineGiveNoPlane) {
 TEST_F(RegionPlanesTest, PlanesThatLeaveTheRangeAreDroppedThere) {
   Support(TiltedPlane(), [](int, int) { return true; });
   const float z = DepthAt(camera_, TiltedPlane(), 80, 60);
-  const std::vector<Plane> planes = MakeRegionPlanes(
-      regions_, camera_, inverse_depths_, kTolerance, {0.5f, z}, 1);
+  const std::vector<Plane> planes =
+      MakeRegionPlanes(regions_, camera_, points_, kTolerance, {0.5f, z}, 1);
   int num_inside = 0;
   for (int row = 0; row < kHeight; ++row) {
     for (int col = 0; col < kWidth; ++col) {

@@ -52,41 +52,45 @@ class InputCacheTest : public testing::Test {
 
 TEST_F(InputCacheTest, ReadsAnImageOnce) {
   InputCache cache = MakeCache(kPlenty);
-  const auto first = cache.Image(1, 0);
+  const auto first = cache.Image(1);
   ASSERT_NE(first, nullptr);
   EXPECT_EQ(first->width, kWidth);
   EXPECT_EQ(first->height, kHeight);
   std::filesystem::remove(workspace_.ImagePath(1));
-  EXPECT_EQ(cache.Image(1, 0), first);
+  EXPECT_EQ(cache.Image(1), first);
 }
 
 TEST_F(InputCacheTest, ReadsAgainWhatDidNotFit) {
-  InputCache cache = MakeCache(kImageBytes);  // a fifth of it is for images
-  ASSERT_NE(cache.Image(1, 0), nullptr);
+  InputCache cache = MakeCache(kImageBytes);  // a quarter of it is for images
+  ASSERT_NE(cache.Image(1), nullptr);
   std::filesystem::remove(workspace_.ImagePath(1));
-  EXPECT_EQ(cache.Image(1, 0), nullptr);
+  EXPECT_EQ(cache.Image(1), nullptr);
 }
 
-TEST_F(InputCacheTest, LevelsAreKeptApart) {
+TEST_F(InputCacheTest, AStageGetsImagesOfItsLevel) {
   InputCache cache = MakeCache(kPlenty);
-  const auto full = cache.Image(1, 0);
-  const auto half = cache.Image(1, 1);
+  cache.StartStage(1);
+  const auto half = cache.Image(1);
   ASSERT_NE(half, nullptr);
   const Camera camera = LevelCamera(workspace_.camera(1), 1);
   EXPECT_EQ(half->width, camera.width);
   EXPECT_EQ(half->height, camera.height);
-  EXPECT_EQ(cache.Image(1, 0), full);
-  EXPECT_EQ(cache.Image(1, 1), half);
+  cache.StartStage(1);
+  EXPECT_EQ(cache.Image(1), half);
+  cache.StartStage(0);
+  const auto full = cache.Image(1);
+  ASSERT_NE(full, nullptr);
+  EXPECT_EQ(full->width, kWidth);
 }
 
 TEST_F(InputCacheTest, UnreadableImageIsReportedOnce) {
   std::filesystem::resize_file(workspace_.ImagePath(2), 10);
   InputCache cache = MakeCache(kPlenty);
-  for (int i = 0; i < 3; ++i) EXPECT_EQ(cache.Image(2, 0), nullptr);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(cache.Image(2), nullptr);
   EXPECT_EQ(warnings_.size(), 1u);
   EXPECT_THAT(warnings_[0], testing::HasSubstr(ViewName(2)));
   EXPECT_THAT(cache.UnreadableImages(), testing::ElementsAre(ViewName(2)));
-  EXPECT_NE(cache.Image(1, 0), nullptr);
+  EXPECT_NE(cache.Image(1), nullptr);
 }
 
 TEST_F(InputCacheTest, InverseDepthIsThatOfTheFilesAtPixelCentres) {
@@ -95,7 +99,10 @@ TEST_F(InputCacheTest, InverseDepthIsThatOfTheFilesAtPixelCentres) {
   const auto inverse = cache.InverseDepth(0, workspace_.camera(0), files);
   ASSERT_NE(inverse, nullptr);
   for (int i = 0; i < kWidth * kHeight; ++i) {
-    EXPECT_NEAR((*inverse)[i] * scene_.views()[0].truth.depth[i], 1, 1e-5);
+    EXPECT_NEAR(inverse->step * InverseDepthSteps(inverse->steps.data(), i) *
+                    scene_.views()[0].truth.depth[i],
+                1,
+                1e-5);
   }
 }
 
@@ -106,7 +113,7 @@ TEST_F(InputCacheTest, DepthIsReadOnceUntilForgotten) {
   const auto first = cache.InverseDepth(0, camera, files);
   std::filesystem::remove(files.depth);
   EXPECT_EQ(cache.InverseDepth(0, camera, files), first);
-  cache.ForgetDepths();
+  cache.StartStage(0);
   EXPECT_EQ(cache.InverseDepth(0, camera, files), nullptr);
 }
 

@@ -162,15 +162,5 @@ TEST(RayConvention, NonFinitePlanesBecomeZero) {
   for (const int i : {3, 4, 5}) EXPECT_EQ(files.depth.data[i], 0);
 }
 
-TEST(InverseDepths, AreThoseAtPixelCentres) {
-  HypothesisMap map = RandomPlanes();
-  map.planes[9] = {{0, 0, 0}, 0};
-  const std::vector<float> inverse = InverseDepths(map, kCamera);
-  ASSERT_EQ(inverse.size(), map.planes.size());
-  EXPECT_EQ(inverse[9], 0);
-  EXPECT_FLOAT_EQ(inverse[3 * kWidth + 4],
-                  1 / DepthAt(kCamera, map.planes[3 * kWidth + 4], 4, 3));
-}
-
 }  // namespace
 }  // namespace hpm

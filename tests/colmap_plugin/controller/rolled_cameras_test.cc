@@ -38,6 +38,7 @@ class RolledCameras : public testing::Test {
   std::vector<HypothesisMap> Estimate(const std::vector<RenderedView>& views) {
     ScheduleOptions options;
     options.method = "nesp";
+    options.num_iterations = 3;
     options.num_geom_passes = 0;
     return EstimateScene(backend_.get(), views, options, kNumRefs);
   }

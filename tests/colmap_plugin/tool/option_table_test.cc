@@ -129,6 +129,8 @@ TEST(OptionTableTest, EveryMemberOfHpmOptionsIsAnOption) {
                num_iterations,
                num_geom_iterations,
                num_geom_passes,
+               num_fine_iterations,
+               num_fine_geom_passes,
                max_views,
                prior,
                weak_gradient,
@@ -142,6 +144,7 @@ TEST(OptionTableTest, EveryMemberOfHpmOptionsIsAnOption) {
   (void)num_geom_passes, (void)geom_weight, (void)geom_max_error,
       (void)num_levels;
   (void)previews, (void)overwrite;
+  (void)num_fine_iterations, (void)num_fine_geom_passes;
   (void)quality, (void)prior, (void)max_views, (void)weak_gradient;
   for (const char* name : {"method",
                            "quality",
@@ -154,6 +157,8 @@ TEST(OptionTableTest, EveryMemberOfHpmOptionsIsAnOption) {
                            "num_iterations",
                            "num_geom_iterations",
                            "num_geom_passes",
+                           "num_fine_iterations",
+                           "num_fine_geom_passes",
                            "geom_weight",
                            "geom_max_error",
                            "num_levels",
@@ -256,6 +261,8 @@ const std::vector<Values>& ValueTable() {
       {"Hpm.num_iterations", {"1", "3"}, {"0", "-1", "2.5"}, ">= 1"},
       {"Hpm.num_geom_iterations", {"1", "2"}, {"0"}, ">= 1"},
       {"Hpm.num_geom_passes", {"1", "2"}, {"0"}, ">= 1"},
+      {"Hpm.num_fine_iterations", {"0", "2"}, {"-1"}, ">= 0"},
+      {"Hpm.num_fine_geom_passes", {"1", "2"}, {"0"}, ">= 1"},
       {"Hpm.geom_weight", {"0", "0.1"}, {"-0.1", "nan"}, ">= 0"},
       {"Hpm.quality",
        {"low", "medium", "high", "extreme"},

@@ -199,12 +199,10 @@ TEST(ParseOptionsTest, QualitySetsWhatIsNotGiven) {
   const HpmOptions high = hpm({"--Hpm.quality", "high"});
   EXPECT_EQ(high.num_iterations, defaults.num_iterations);
   EXPECT_EQ(high.num_geom_passes, defaults.num_geom_passes);
-  EXPECT_EQ(high.num_geom_iterations, defaults.num_geom_iterations);
-  EXPECT_EQ(high.max_views, defaults.max_views);
+  EXPECT_EQ(high.num_fine_iterations, defaults.num_fine_iterations);
   const HpmOptions low =
       hpm({"--Hpm.quality", "low", "--Hpm.num_geom_passes", "5"});
   EXPECT_LT(low.num_iterations, defaults.num_iterations);
-  EXPECT_LT(low.max_views, defaults.max_views);
   EXPECT_EQ(low.num_geom_passes, 5);
   EXPECT_THAT(Parse({"--Hpm.quality", "best"}).problems, SizeIs(1));
 }
