@@ -12,6 +12,7 @@ import pathlib
 import shutil
 import signal
 import subprocess
+import sys
 import tempfile
 import time
 
@@ -33,15 +34,21 @@ def measure(hpm_mvs, scene, size, num_images):
         program = subprocess.Popen(
             [hpm_mvs, "patch_match_stereo", "--workspace_path", dense,
              "--PatchMatchStereo.max_image_size", str(size), "--Hpm.quality", "low"],
-            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
         )
         maps = dense / "stereo/depth_maps"
-        done = []
-        while len(done) < num_images and program.poll() is None:
+        pid = 0
+        while pid == 0:  # not Popen.poll(), which would drop the child's usage
             time.sleep(0.05)
+            pid, status, usage = os.wait4(program.pid, os.WNOHANG)
             done = sorted(maps.glob("*.geometric.bin"))
-        program.send_signal(signal.SIGINT)
-        _, _, usage = os.wait4(program.pid, 0)
+            if pid == 0 and len(done) >= num_images:
+                os.kill(program.pid, signal.SIGINT)
+                _, status, usage = os.wait4(program.pid, 0)
+                break
+        program.returncode = os.waitstatus_to_exitcode(status)
+        if not done:
+            sys.exit(f"hpm_mvs ended with {program.returncode} and without maps")
         width, height = done[0].read_bytes()[:32].split(b"&")[:2]
         return int(width), int(height), len(names) - 1, 1024 * usage.ru_maxrss
 

@@ -137,6 +137,7 @@ RunSummary PatchMatchController::Run() {
   }
   const size_t num_in_flight = std::max(cpus.size(), gpus.size());
   needs.working *= num_in_flight;
+  needs.inputs *= num_in_flight;
   const std::string backend_name = first.Name();
   InputCache inputs(workspace,
                     PlanCacheBytes(CacheBytes(options_.patch_match.cache_size),

@@ -10,24 +10,26 @@
 namespace hpm {
 namespace {
 
-constexpr uint64_t kImageShare = 1 + kInverseDepthBytes;
+enum class Input { kImage, kDepth };
+
+int64_t KeyOf(Input input, int image) {
+  return 2 * static_cast<int64_t>(image) + (input == Input::kDepth);
+}
 
 }  // namespace
 
 InputCache::InputCache(const Workspace& workspace,
                        uint64_t max_bytes,
                        LogSink log)
-    : workspace_(workspace),
-      log_(std::move(log)),
-      images_(max_bytes / kImageShare),
-      depths_(max_bytes - max_bytes / kImageShare) {}
+    : workspace_(workspace), log_(std::move(log)), inputs_(max_bytes) {}
 
 std::shared_ptr<const GrayImage> InputCache::Image(int image) {
   int level;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (unreadable_.count(image) > 0) return nullptr;
-    if (auto cached = images_.Find(image)) return cached;
+    if (auto cached = inputs_.Find(KeyOf(Input::kImage, image)))
+      return std::static_pointer_cast<const GrayImage>(cached);
     level = level_;
   }
   try {
@@ -37,7 +39,7 @@ std::shared_ptr<const GrayImage> InputCache::Image(int image) {
     auto loaded = std::make_shared<const GrayImage>(
         level == 0 ? std::move(full) : ShrinkImage(full, level));
     const std::lock_guard<std::mutex> lock(mutex_);
-    images_.Insert(image, loaded, loaded->data.size());
+    inputs_.Insert(KeyOf(Input::kImage, image), loaded, loaded->data.size());
     return loaded;
   } catch (const Error& error) {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -52,13 +54,14 @@ std::shared_ptr<const InverseDepthMap> InputCache::InverseDepth(
     int image, const Camera& camera, const StageFiles& files) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (auto cached = depths_.Find(image)) return cached;
+    if (auto cached = inputs_.Find(KeyOf(Input::kDepth, image)))
+      return std::static_pointer_cast<const InverseDepthMap>(cached);
   }
   try {
     auto inverse = std::make_shared<const InverseDepthMap>(InverseDepthMap::Of(
-        ReadHypotheses(files.depth, files.normal, camera), camera));
+        ReadInverseDepths(files.depth, files.normal, camera)));
     const std::lock_guard<std::mutex> lock(mutex_);
-    depths_.Insert(image, inverse, inverse->steps.size());
+    inputs_.Insert(KeyOf(Input::kDepth, image), inverse, inverse->steps.size());
     return inverse;
   } catch (const Error&) {
     return nullptr;
@@ -67,8 +70,7 @@ std::shared_ptr<const InverseDepthMap> InputCache::InverseDepth(
 
 void InputCache::StartStage(int level) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  depths_.Clear();
-  if (level != level_) images_.Clear();
+  inputs_.Clear();
   level_ = level;
 }
 

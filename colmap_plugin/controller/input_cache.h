@@ -31,8 +31,8 @@ class InputCache {
                                                       const Camera& camera,
                                                       const StageFiles& files);
 
-  // Forgets what a stage on images of this level does not read: depth maps,
-  // which belong to the stage before, and images of other levels.
+  // Forgets the inputs of the stage before; images are halved `level` times
+  // from now on.
   void StartStage(int level);
 
   // Names of the images that could not be read so far.
@@ -43,9 +43,8 @@ class InputCache {
   LogSink log_;
   // Held to look up and to keep, not to read: threads decode side by side.
   mutable std::mutex mutex_;
-  int level_ = 0;  // of images_
-  LruCache<int, GrayImage> images_;
-  LruCache<int, InverseDepthMap> depths_;
+  int level_ = 0;
+  LruCache<int64_t, void> inputs_;  // GrayImage or InverseDepthMap; see KeyOf
   std::set<int> unreadable_;
 };
 

@@ -10,6 +10,53 @@ namespace {
 // Where COLMAP's ray of (col, row) meets the library's pixel grid.
 constexpr float kColmapShift = -0.5f;
 
+struct MapPair {
+  const Map& depth;
+  const Map& normal;
+};
+
+// visit(i, plane, z) for every pixel with a depth; z is that of the plane at
+// the pixel's centre.
+template <class Visit>
+void ForEachPlane(const MapPair& maps,
+                  const Camera& camera,
+                  const Visit& visit) {
+  const std::vector<float>& normal = maps.normal.data;
+  const size_t size = maps.depth.data.size();
+  for (int row = 0; row < camera.height; ++row) {
+    for (int col = 0; col < camera.width; ++col) {
+      const size_t i = static_cast<size_t>(row) * camera.width + col;
+      const float depth = maps.depth.data[i];
+      if (!(depth > 0)) continue;
+      const Plane plane =
+          PlaneFromDepth(camera,
+                         static_cast<float>(col) + kColmapShift,
+                         static_cast<float>(row) + kColmapShift,
+                         depth,
+                         {normal[i], normal[size + i], normal[2 * size + i]});
+      const float z = DepthAt(
+          camera, plane, static_cast<float>(col), static_cast<float>(row));
+      if (std::isfinite(z) && z > 0 && plane.distance > 0) visit(i, plane, z);
+    }
+  }
+}
+
+DepthAndNormal ReadMaps(const std::filesystem::path& depth_path,
+                        const std::filesystem::path& normal_path,
+                        const Camera& camera) {
+  const auto read = [&](const std::filesystem::path& path, int channels) {
+    Map map = ReadMap(path);
+    if (map.width != camera.width || map.height != camera.height ||
+        map.channels != channels) {
+      throw Error(ErrorCode::kBadInput,
+                  path.string() +
+                      ": not the size of its image; delete it and run again");
+    }
+    return map;
+  };
+  return {read(depth_path, 1), read(normal_path, 3)};
+}
+
 }  // namespace
 
 DepthAndNormal ToColmapMaps(const HypothesisMap& map,
@@ -42,42 +89,29 @@ HypothesisMap FromColmapMaps(const Map& depth,
                              const Map& normal,
                              const Camera& camera) {
   HypothesisMap map(camera.width, camera.height);
-  const size_t size = map.planes.size();
-  for (int row = 0; row < map.height; ++row) {
-    for (int col = 0; col < map.width; ++col) {
-      const size_t i = static_cast<size_t>(row) * map.width + col;
-      if (!(depth.data[i] > 0)) continue;
-      const Plane plane = PlaneFromDepth(
-          camera,
-          static_cast<float>(col) + kColmapShift,
-          static_cast<float>(row) + kColmapShift,
-          depth.data[i],
-          {normal.data[i], normal.data[size + i], normal.data[2 * size + i]});
-      const float z = DepthAt(
-          camera, plane, static_cast<float>(col), static_cast<float>(row));
-      if (std::isfinite(z) && z > 0 && plane.distance > 0)
+  ForEachPlane(
+      {depth, normal}, camera, [&](size_t i, const Plane& plane, float) {
         map.planes[i] = plane;
-    }
-  }
+      });
   return map;
 }
 
 HypothesisMap ReadHypotheses(const std::filesystem::path& depth_path,
                              const std::filesystem::path& normal_path,
                              const Camera& camera) {
-  const auto read = [&](const std::filesystem::path& path, int channels) {
-    Map map = ReadMap(path);
-    if (map.width != camera.width || map.height != camera.height ||
-        map.channels != channels) {
-      throw Error(ErrorCode::kBadInput,
-                  path.string() +
-                      ": not the size of its image; delete it and run again");
-    }
-    return map;
-  };
-  const Map depth = read(depth_path, 1);
-  const Map normal = read(normal_path, 3);
-  return FromColmapMaps(depth, normal, camera);
+  const DepthAndNormal maps = ReadMaps(depth_path, normal_path, camera);
+  return FromColmapMaps(maps.depth, maps.normal, camera);
+}
+
+std::vector<float> ReadInverseDepths(const std::filesystem::path& depth_path,
+                                     const std::filesystem::path& normal_path,
+                                     const Camera& camera) {
+  const DepthAndNormal maps = ReadMaps(depth_path, normal_path, camera);
+  std::vector<float> inverse(maps.depth.data.size(), 0.0f);
+  ForEachPlane({maps.depth, maps.normal},
+               camera,
+               [&](size_t i, const Plane&, float z) { inverse[i] = 1 / z; });
+  return inverse;
 }
 
 }  // namespace hpm

@@ -37,4 +37,10 @@ HypothesisMap ReadHypotheses(const std::filesystem::path& depth_path,
                              const std::filesystem::path& normal_path,
                              const Camera& camera);
 
+// The same files, but only 1/z at the pixels' centres, 0 = none; takes less
+// memory.
+std::vector<float> ReadInverseDepths(const std::filesystem::path& depth_path,
+                                     const std::filesystem::path& normal_path,
+                                     const Camera& camera);
+
 }  // namespace hpm

@@ -120,7 +120,7 @@ std::vector<OptionSpec> MakeTable() {
           "auto: GPUs that pass a self-test, else the CPU; cuda: GPUs or an error"),
       Stereo(kCommon, "gpu_index", &P::gpu_index, IndexList(),
              "GPUs to use: -1 all, or a list as 0,1; a GPU named twice gets twice the images"),
-      Stereo(kCommon, "cache_size", &P::cache_size, Above(0), "Memory for images and maps in GiB"),
+      Stereo(kCommon, "cache_size", &P::cache_size, Above(0), "Memory for images and maps in GiB, at most; what the images at work need is enough"),
       Row(
           kCommon, "project_path", [](ToolOptions* o) { return &o->project_path; }, Anything(),
           "Read all options from this ini file; the rest of the command line is then ignored"),

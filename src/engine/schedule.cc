@@ -132,7 +132,6 @@ void AddStages(const Method& method,
 void AddRegionStages(bool fast,
                      const ScheduleOptions& options,
                      StageList* list) {
-  const bool geometric = options.num_geom_passes > 0;
   const int coarsest = options.num_levels - 1;
   for (int level = coarsest; level >= 0; --level) {
     const bool is_coarsest = level == coarsest;
@@ -140,15 +139,16 @@ void AddRegionStages(bool fast,
         is_coarsest ? options.num_iterations : options.num_fine_iterations;
     int num_geom_passes =
         is_coarsest ? options.num_geom_passes : options.num_fine_geom_passes;
-    if (!geometric) {
-      num_iterations = std::max(1, num_iterations);
-      num_geom_passes = 0;
-    } else if (fast) {
+    if (fast) {
       num_iterations = is_coarsest ? std::max(1, num_iterations - 1) : 0;
       num_geom_passes = (num_geom_passes + 1) / 2;
       // The finer levels' passes go on where these end.
       if (is_coarsest && level > 0)
         num_geom_passes = std::max(1, num_geom_passes - 1);
+    }
+    if (options.num_geom_passes == 0) {
+      num_iterations = std::max(1, num_iterations);
+      num_geom_passes = 0;
     }
     list->AddPhotometric(level, !is_coarsest, num_iterations, {});
     for (int i = 0; i < num_geom_passes; ++i) {

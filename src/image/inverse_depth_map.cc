@@ -5,14 +5,37 @@
 
 namespace hpm {
 
+namespace {
+
+// The largest value, but not so large that a single wrong pixel next to the
+// camera would leave the others few steps.
+float TopOf(const std::vector<float>& values) {
+  constexpr float kMostOverMedian = 64;
+  constexpr size_t kNumSamples = 10000;
+  const size_t stride = values.size() / kNumSamples + 1;
+  std::vector<float> samples;
+  float largest = 0;
+  for (size_t i = 0; i < values.size(); ++i) {
+    if (!(values[i] > 0)) continue;
+    largest = std::max(largest, values[i]);
+    if (i % stride == 0) samples.push_back(values[i]);
+  }
+  if (samples.empty()) return largest;
+  const auto middle =
+      samples.begin() + static_cast<ptrdiff_t>(samples.size() / 2);
+  std::nth_element(samples.begin(), middle, samples.end());
+  return std::min(largest, kMostOverMedian * *middle);
+}
+
+}  // namespace
+
 InverseDepthMap InverseDepthMap::Of(const std::vector<float>& values) {
   constexpr double kNumSteps = (1 << 24) - 1;
   InverseDepthMap map;
   map.steps.resize(kInverseDepthBytes * values.size() + 1);
-  float largest = 0;
-  for (const float value : values) largest = std::max(largest, value);
-  if (!(largest > 0)) return map;
-  map.step = static_cast<float>(largest / kNumSteps);
+  const float top = TopOf(values);
+  if (!(top > 0)) return map;
+  map.step = static_cast<float>(top / kNumSteps);
   for (size_t i = 0; i < values.size(); ++i) {
     if (!(values[i] > 0)) continue;
     // Not below one step, which would read as "no depth".
@@ -24,22 +47,6 @@ InverseDepthMap InverseDepthMap::Of(const std::vector<float>& values) {
     bytes[2] = static_cast<uint8_t>(steps >> 16);
   }
   return map;
-}
-
-InverseDepthMap InverseDepthMap::Of(const HypothesisMap& map,
-                                    const Camera& camera) {
-  std::vector<float> values(map.planes.size(), 0.0f);
-  for (int row = 0; row < map.height; ++row) {
-    for (int col = 0; col < map.width; ++col) {
-      const size_t i = static_cast<size_t>(row) * map.width + col;
-      if (!(map.planes[i].distance > 0)) continue;
-      values[i] = 1.0f / DepthAt(camera,
-                                 map.planes[i],
-                                 static_cast<float>(col),
-                                 static_cast<float>(row));
-    }
-  }
-  return Of(values);
 }
 
 }  // namespace hpm

@@ -10,6 +10,20 @@
 namespace hpm {
 namespace {
 
+std::shared_ptr<const InverseDepthMap> InverseDepth(const HypothesisMap& map,
+                                                    const Camera& camera) {
+  std::vector<float> inverse;
+  for (int row = 0; row < map.height; ++row) {
+    for (int col = 0; col < map.width; ++col) {
+      inverse.push_back(1 / DepthAt(camera,
+                                    map.planes[inverse.size()],
+                                    static_cast<float>(col),
+                                    static_cast<float>(row)));
+    }
+  }
+  return std::make_shared<const InverseDepthMap>(InverseDepthMap::Of(inverse));
+}
+
 double Median(std::vector<double> values) {
   if (values.empty()) return NAN;
   const auto middle =
@@ -72,8 +86,7 @@ std::vector<HypothesisMap> EstimateProblems(Backend* backend,
       for (size_t k = 0; k < views.srcs.size(); ++k) {
         if (!stage.geometric) continue;
         views.srcs[k].inverse_depth =
-            std::make_shared<const InverseDepthMap>(InverseDepthMap::Of(
-                maps[problems[i].sources[k]], views.srcs[k].camera));
+            InverseDepth(maps[problems[i].sources[k]], views.srcs[k].camera);
       }
       RunStage(backend,
                views,

@@ -159,6 +159,9 @@ TEST(Schedule, WithoutGeometricPassesFinerLevelsMatch) {
   ASSERT_EQ(schedule.stages.size(), 2u);
   ASSERT_EQ(schedule.stages[1].passes.size(), 1u);
   EXPECT_EQ(schedule.stages[1].passes[0].num_iterations, 1);
+  options.method = "hpm_fast";
+  EXPECT_EQ(MakeSchedule(options).stages[0].passes[0].num_iterations,
+            schedule.stages[0].passes[0].num_iterations - 1);
 }
 
 TEST(Schedule, OnlyTheLastPassHasStrongRegionPriors) {

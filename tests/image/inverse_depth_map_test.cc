@@ -18,41 +18,26 @@ TEST(InverseDepthMap, KeepsValuesToAStepOfTheLargest) {
 }
 
 TEST(InverseDepthMap, NoDepthStaysNoneAndTheFarthestStaysADepth) {
-  const InverseDepthMap map = InverseDepthMap::Of({0.0f, -1.0f, 1e-9f, 4.0f});
+  const InverseDepthMap map =
+      InverseDepthMap::Of({0.0f, -1.0f, 1e-9f, 4.0f, 2.0f});
   EXPECT_EQ(Value(map, 0), 0);
   EXPECT_EQ(Value(map, 1), 0);
   EXPECT_EQ(Value(map, 2), map.step);
   EXPECT_NEAR(Value(map, 3), 4, 1e-6);
 }
 
+TEST(InverseDepthMap, OneWrongPixelNextToTheCameraCostsTheOthersNothing) {
+  std::vector<float> values(1000, 0.5f);
+  values[7] = 1e6f;
+  const InverseDepthMap map = InverseDepthMap::Of(values);
+  EXPECT_NEAR(Value(map, 0), 0.5f, 2e-6f);
+  EXPECT_NEAR(Value(map, 7), 32, 1e-4f);
+}
+
 TEST(InverseDepthMap, WithoutAnyDepthItIsEmptyOfThem) {
   const InverseDepthMap map = InverseDepthMap::Of({0.0f, 0.0f});
   EXPECT_EQ(Value(map, 0), 0);
   EXPECT_EQ(Value(map, 1), 0);
-}
-
-TEST(InverseDepthMap, OfHypothesesIsThatAtPixelCentres) {
-  Camera camera = {};
-  camera.width = 3;
-  camera.height = 2;
-  camera.fx = camera.fy = 5;
-  camera.cx = 1;
-  camera.cy = 0.5f;
-  HypothesisMap hypotheses(3, 2);
-  for (int i = 0; i < 6; ++i) {
-    hypotheses.planes[i] = {{0.1f, 0.2f, -0.9f}, 2.0f + static_cast<float>(i)};
-  }
-  hypotheses.planes[4].distance = 0;
-  const InverseDepthMap map = InverseDepthMap::Of(hypotheses, camera);
-  for (int i = 0; i < 6; ++i) {
-    if (i == 4) continue;
-    const float z = DepthAt(camera,
-                            hypotheses.planes[i],
-                            static_cast<float>(i % 3),
-                            static_cast<float>(i / 3));
-    EXPECT_NEAR(Value(map, i) * z, 1, 1e-6);
-  }
-  EXPECT_EQ(Value(map, 4), 0);
 }
 
 }  // namespace
