@@ -189,6 +189,7 @@ void StageRunner::Publish(int stage,
     for (size_t i = 0; i < keep.size(); ++i) {
       keep[i] = __builtin_popcount(consistent[i]) >= params.min_num_consistent;
     }
+    if (!plan_.WritesGraph(stage)) consistent = std::vector<uint32_t>();
   }
   if (!info.spec.passes.empty()) {
     result->cost_evaluations_per_pixel =

@@ -92,7 +92,7 @@ void RunStage(Backend* backend,
     if (stage.from_coarser && pass.kind == PassKind::kBasic) {
       KeepUnlessClearlyBetter(carried, map);
     }
-    map->priors = {};
+    map->priors = std::vector<Plane>();  // gives the memory back, {} would not
     map->prior_level = 0;
   }
 }
