@@ -82,6 +82,41 @@ TEST_F(CpuBackendTest, OneAndTwoThreadsGiveTheSameBytes) {
   EXPECT_GT(one.num_evaluations, 0u);
 }
 
+TEST_F(CpuBackendTest, ConsistencyIsLookedAtWhereTheFilterLooks) {
+  const Result all = RunAll(2);
+  const auto backend = MakeCpuBackend("auto", 2);
+  backend->SetViews(views_, MethodParams());
+  const FilterParams every_third = {0.1f, 0.05f, 1.0f, 2, 3};
+  const std::vector<uint32_t> some =
+      backend->ConsistentViews(all.map, every_third, true, control_);
+  ASSERT_EQ(some.size(), all.consistent.size());
+  for (int row = 0; row < kHeight; ++row) {
+    for (int col = 0; col < kWidth; ++col) {
+      const int at = row * kWidth + col;
+      const bool looks = row % 3 == 0 && col % 3 == 0;
+      ASSERT_EQ(some[at], looks ? all.consistent[at] : 0u);
+    }
+  }
+}
+
+// The costs are taken as they are: only the iterations count.
+TEST_F(CpuBackendTest, AStoredStartComputesNoCosts) {
+  const auto backend = MakeCpuBackend("auto", 2);
+  backend->SetViews(views_, MethodParams());
+  HypothesisMap map(kWidth, kHeight);
+  backend->Run(kBasic, pattern_, &map, control_);
+  const HypothesisMap before = map;
+  const uint64_t num_before = backend->num_cost_evaluations();
+  Pass stored = kBasic;
+  stored.start = StartFrom::kStored;
+  stored.num_iterations = 0;
+  stored.median = false;
+  backend->Run(stored, pattern_, &map, control_);
+  EXPECT_EQ(backend->num_cost_evaluations(), num_before);
+  EXPECT_TRUE(SameBytes(before.costs, map.costs));
+  EXPECT_TRUE(SameBytes(before.planes, map.planes));
+}
+
 TEST_F(CpuBackendTest, AnotherSeedGivesAnotherMap) {
   EXPECT_FALSE(SameBytes(RunAll(2, 1).map.planes, RunAll(2, 2).map.planes));
 }
