@@ -103,8 +103,7 @@ ViewSet StageRunner::MakeViews(int stage, int problem) {
   views.random_key = RandomKey(options_.random_seed, name);
   src_images_.clear();
   num_without_maps_ = 0;
-  misses_maps_ =
-      spec.from_coarser && !plan_.HasCompleteMaps(stage - 1, p.ref_image);
+  misses_maps_ = stage > 0 && !plan_.HasCompleteMaps(stage - 1, p.ref_image);
   if (spec.passes.empty()) return views;  // nothing is matched
   for (const int src : p.src_images) {
     View view = {plan_.CameraOf(stage, src), inputs_->Image(src), nullptr};
