@@ -224,6 +224,43 @@ TEST_F(ControllerTest, ResultsWithoutAFailedSourceAreMadeAgain) {
   EXPECT_EQ(Depth(0, "geometric"), expected);
 }
 
+// Also where the gap lies several stages and a level before the end.
+TEST_F(ControllerTest, AGapIsRememberedThroughLevelsAndStages) {
+  options_.hpm.method = "hpm";
+  options_.hpm.num_levels = 2;
+  options_.hpm.num_geom_passes = 2;
+  const auto depths = [this] {
+    std::vector<std::vector<float>> maps;
+    for (int i = 0; i < kNumImages; ++i) maps.push_back(Depth(i, "geometric"));
+    return maps;
+  };
+  Run();
+  const auto expected = depths();
+  options_.hpm.overwrite = true;
+  // The maps of image 1 are away while image 0, and no other, wants to read
+  // them.
+  const std::filesystem::path map = scene_.path() / "stereo/hpm_mvs" /
+                                    "level_1_geometric_1" /
+                                    (ViewName(1) + ".depth.bin");
+  const std::filesystem::path away = scene_.path() / "away.bin";
+  on_progress_ = [&](const ProgressEvent& event) {
+    if (event.stage == "level_1_geometric_1" &&
+        event.image == ViewName(kNumImages - 1) &&
+        std::filesystem::exists(map)) {
+      std::filesystem::rename(map, away);
+    } else if (event.stage == "level_1_geometric_2" &&
+               event.image == ViewName(0) && std::filesystem::exists(away)) {
+      std::filesystem::rename(away, map);
+    }
+  };
+  Run();
+  EXPECT_NE(depths(), expected);
+  on_progress_ = nullptr;
+  options_.hpm.overwrite = false;
+  Run();
+  EXPECT_EQ(depths(), expected);
+}
+
 TEST_F(ControllerTest, EveryMethodRuns) {
   options_.hpm.num_iterations = 1;
   options_.hpm.num_levels = 2;
