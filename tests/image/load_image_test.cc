@@ -1,13 +1,12 @@
 #include "src/image/load_image.h"
 
 #include "src/base/error.h"
+#include "tests/base/scratch_folder.h"
 
 #include <cmath>
-#include <cstdlib>
 #include <fstream>
 #include <functional>
 #include <random>
-#include <stdexcept>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -19,17 +18,6 @@ namespace {
 
 class LoadImage : public testing::Test {
  protected:
-  LoadImage() {
-    std::string name =
-        (std::filesystem::temp_directory_path() / "hpm_image_XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("mkdtemp");
-    folder_ = name;
-  }
-  ~LoadImage() override {
-    std::error_code ignored;
-    std::filesystem::remove_all(folder_, ignored);
-  }
-
   std::filesystem::path Write(const std::string& name, const cv::Mat& image) {
     cv::imwrite((folder_ / name).string(), image);
     return folder_ / name;
@@ -46,7 +34,7 @@ class LoadImage : public testing::Test {
     }
   }
 
-  std::filesystem::path folder_;
+  const ScratchFolder folder_;
 };
 
 cv::Mat RandomColours(int width, int height) {
@@ -116,13 +104,12 @@ TEST_F(LoadImage, MissingFileIsBadInput) {
   ExpectBadInput(folder_ / "absent.png");
 }
 
-TEST_F(LoadImage, FolderIsBadInput) { ExpectBadInput(folder_); }
+TEST_F(LoadImage, FolderIsBadInput) { ExpectBadInput(folder_.path()); }
 
 TEST_F(LoadImage, GarbageAndEmptyFilesAreBadInput) {
-  std::ofstream(folder_ / "garbage.jpg")
-      << "\xff\xd8\xff this is not a picture";
+  WriteFile(folder_ / "garbage.jpg", "\xff\xd8\xff this is not a picture");
   ExpectBadInput(folder_ / "garbage.jpg");
-  std::ofstream(folder_ / "empty.png");
+  WriteFile(folder_ / "empty.png", "");
   ExpectBadInput(folder_ / "empty.png");
 }
 

@@ -19,10 +19,10 @@ class Ply : public testing::Test {
            testing::UnitTest::GetInstance()->current_test_info()->name()) +
        ".ply");
 
-  void WriteText(const std::string& text) {
+  void WriteFile(const std::string& text) {
     std::ofstream(path_, std::ios::binary) << text;
   }
-  std::string ReadText() {
+  std::string ReadFile() {
     std::ifstream stream(path_, std::ios::binary);
     return {std::istreambuf_iterator<char>(stream), {}};
   }
@@ -64,7 +64,7 @@ TEST_F(Ply, PassesOverUnknownPropertiesAndLaterElements) {
   for (const double* value : {&x, &y, &z}) {
     text.append(reinterpret_cast<const char*>(value), sizeof(double));
   }
-  WriteText(text);
+  WriteFile(text);
   const PointCloud cloud = ReadPly(path_);
   ASSERT_EQ(cloud.points.size(), 1u);
   EXPECT_EQ(cloud.points[0].z, 3.5f);
@@ -76,15 +76,15 @@ TEST_F(Ply, EveryTruncationIsAnErrorThatNamesTheFile) {
   PointCloud cloud;
   cloud.points = {{1, 2, 3}, {4, 5, 6}};
   WritePly(path_, cloud);
-  const std::string whole = ReadText();
+  const std::string whole = ReadFile();
   for (size_t length = 0; length < whole.size(); ++length) {
-    WriteText(whole.substr(0, length));
+    WriteFile(whole.substr(0, length));
     ExpectBadInput();
   }
 }
 
 TEST_F(Ply, AHugeVertexCountIsAnErrorBeforeAnyAllocation) {
-  WriteText(
+  WriteFile(
       "ply\nformat binary_little_endian 1.0\nelement vertex "
       "18446744073709551615\n"
       "property float x\nproperty float y\nproperty float z\nend_header\n");
@@ -92,7 +92,7 @@ TEST_F(Ply, AHugeVertexCountIsAnErrorBeforeAnyAllocation) {
 }
 
 TEST_F(Ply, AsciiIsRefused) {
-  WriteText(
+  WriteFile(
       "ply\nformat ascii 1.0\nelement vertex 0\nproperty float "
       "x\nend_header\n");
   ExpectBadInput();

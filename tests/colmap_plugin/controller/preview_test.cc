@@ -1,6 +1,6 @@
 #include "colmap_plugin/controller/preview.h"
 
-#include "tests/colmap_plugin/controller/scene_workspace.h"
+#include "tests/base/scratch_folder.h"
 
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
@@ -29,25 +29,14 @@ DepthAndNormal Maps() {
 
 class Preview : public testing::Test {
  protected:
-  Preview() {
-    std::string name =
-        (std::filesystem::temp_directory_path() / "hpm_preview_XXXXXX")
-            .string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("mkdtemp");
-    folder_ = name;
-  }
-  ~Preview() override {
-    std::error_code ignored;
-    std::filesystem::remove_all(folder_, ignored);
-  }
   cv::Mat Read(const std::string& name) const {
     return cv::imread((folder_ / name).string());
   }
-  std::filesystem::path folder_;
+  const ScratchFolder folder_;
 };
 
 TEST_F(Preview, PicturesHaveTheSizeOfTheMaps) {
-  WritePreviews(folder_, "a.png", Maps());
+  WritePreviews(folder_.path(), "a.png", Maps());
   for (const char* name : {"a.png.depth.jpg", "a.png.normal.jpg"}) {
     const cv::Mat picture = Read(name);
     EXPECT_EQ(picture.cols, kWidth) << name;
@@ -56,7 +45,7 @@ TEST_F(Preview, PicturesHaveTheSizeOfTheMaps) {
 }
 
 TEST_F(Preview, NearIsWarmFarIsCoolNothingIsBlack) {
-  WritePreviews(folder_, "a.png", Maps());
+  WritePreviews(folder_.path(), "a.png", Maps());
   const cv::Mat depth = Read("a.png.depth.jpg");
   const auto near = depth.at<cv::Vec3b>(10, 10);  // blue, green, red
   const auto far = depth.at<cv::Vec3b>(10, 54);
@@ -67,7 +56,7 @@ TEST_F(Preview, NearIsWarmFarIsCoolNothingIsBlack) {
 }
 
 TEST_F(Preview, FacingNormalsAreLightBlue) {
-  WritePreviews(folder_, "a.png", Maps());
+  WritePreviews(folder_.path(), "a.png", Maps());
   const auto colour = Read("a.png.normal.jpg").at<cv::Vec3b>(10, 10);
   EXPECT_NEAR(colour[0], 255, 12);
   EXPECT_NEAR(colour[1], 128, 12);
@@ -78,7 +67,7 @@ TEST_F(Preview, EmptyMapsGiveBlackPictures) {
   DepthAndNormal maps = Maps();
   for (float& z : maps.depth.data) z = 0;
   for (float& n : maps.normal.data) n = 0;
-  WritePreviews(folder_, "a.png", maps);
+  WritePreviews(folder_.path(), "a.png", maps);
   EXPECT_LT(cv::norm(Read("a.png.depth.jpg"), cv::NORM_INF), 10);
   EXPECT_LT(cv::norm(Read("a.png.normal.jpg"), cv::NORM_INF), 10);
 }

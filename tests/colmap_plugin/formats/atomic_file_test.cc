@@ -105,7 +105,7 @@ TEST(AtomicFile, SyncsTheFileBeforeRenamingAndTheFolderAfter) {
   EXPECT_THAT(faults.calls,
               testing::ElementsAre(
                   "write", "fsync", "close", "rename", "fsync", "close"));
-  EXPECT_EQ(ReadBytes(folder / "f"), "0123456789");
+  EXPECT_EQ(ReadFile(folder / "f"), "0123456789");
 }
 
 TEST(AtomicFile, SurvivesInterruptsAndShortWrites) {
@@ -114,7 +114,7 @@ TEST(AtomicFile, SurvivesInterruptsAndShortWrites) {
     faults.num_interrupts = 3;
     faults.max_write = 3;
   }));
-  EXPECT_EQ(ReadBytes(folder / "f"), "0123456789");
+  EXPECT_EQ(ReadFile(folder / "f"), "0123456789");
 }
 
 TEST(AtomicFile, AnyFailedStepLeavesTheOldFileAndNoTemporary) {
@@ -130,7 +130,7 @@ TEST(AtomicFile, AnyFailedStepLeavesTheOldFileAndNoTemporary) {
     EXPECT_EQ(error->code(), ErrorCode::kOutOfResources);
     EXPECT_THAT(error->what(), testing::HasSubstr((folder / "f").string()));
     EXPECT_THAT(error->what(), testing::HasSubstr("bytes free"));
-    EXPECT_EQ(ReadBytes(folder / "f"), "old");
+    EXPECT_EQ(ReadFile(folder / "f"), "old");
     EXPECT_EQ(folder.CountFiles(), 1u);
   }
 }
@@ -164,7 +164,7 @@ TEST(AtomicFile, NothingAppearsWithoutCommit) {
 
 TEST(AtomicFile, AFileInPlaceOfTheFolderIsBadInput) {
   const ScratchFolder folder;
-  WriteBytes(folder / "file", "x");
+  WriteFile(folder / "file", "x");
   ExpectError(ErrorCode::kBadInput, "f", [&] {
     WriteFileAtomically(folder / "file/sub/f", "y");
   });
@@ -172,23 +172,23 @@ TEST(AtomicFile, AFileInPlaceOfTheFolderIsBadInput) {
 
 TEST(AtomicFile, NeverFollowsALinkInPlaceOfTheTemporary) {
   const ScratchFolder folder;
-  WriteBytes(folder / "canary", "alive");
+  WriteFile(folder / "canary", "alive");
   const std::string temporary =
       "f.tmp." + ThisHost() + "." + std::to_string(getpid());
   std::filesystem::create_symlink(folder / "canary", folder / temporary);
   WriteFileAtomically(folder / "f", "new");
-  EXPECT_EQ(ReadBytes(folder / "canary"), "alive");
-  EXPECT_EQ(ReadBytes(folder / "f"), "new");
+  EXPECT_EQ(ReadFile(folder / "canary"), "alive");
+  EXPECT_EQ(ReadFile(folder / "f"), "new");
   EXPECT_FALSE(std::filesystem::is_symlink(folder / "f"));
 }
 
 TEST(AtomicFile, ALinkUnderTheFinalNameIsReplacedNotFollowed) {
   const ScratchFolder folder;
-  WriteBytes(folder / "canary", "alive");
+  WriteFile(folder / "canary", "alive");
   std::filesystem::create_symlink(folder / "canary", folder / "f");
   WriteFileAtomically(folder / "f", "new");
-  EXPECT_EQ(ReadBytes(folder / "canary"), "alive");
-  EXPECT_EQ(ReadBytes(folder / "f"), "new");
+  EXPECT_EQ(ReadFile(folder / "canary"), "alive");
+  EXPECT_EQ(ReadFile(folder / "f"), "new");
 }
 
 TEST(RemoveStaleTemporaries, RemovesOnlyThoseOfDeadProcessesOfThisHost) {
@@ -210,8 +210,8 @@ TEST(RemoveStaleTemporaries, RemovesOnlyThoseOfDeadProcessesOfThisHost) {
       "a.bin.tmp." + host + ".99999999999999999999",
       "a.bin." + dead,
       dead};
-  WriteBytes(folder / stale, "torn");
-  for (const std::string& name : kept) WriteBytes(folder / name, "keep");
+  WriteFile(folder / stale, "torn");
+  for (const std::string& name : kept) WriteFile(folder / name, "keep");
   std::filesystem::create_symlink(folder / "a.bin",
                                   folder / ("l.bin.tmp." + host + "." + dead));
 

@@ -17,14 +17,14 @@ TEST(ConsistencyGraph, WritesGroupsByteForByteAndReadsThemBack) {
   const ScratchFolder folder;
   const ConsistencyGraph graph{4, 3, {2, 0, 2, 7, 9, 3, 2, 1, 0}};
   WriteConsistencyGraph(folder / "g.bin", graph);
-  EXPECT_EQ(ReadBytes(folder / "g.bin"), GraphBytes("4&3&1&", graph.data));
+  EXPECT_EQ(ReadFile(folder / "g.bin"), GraphBytes("4&3&1&", graph.data));
   EXPECT_EQ(ReadConsistencyGraph(folder / "g.bin").data, graph.data);
 }
 
 TEST(ConsistencyGraph, WithoutConsistentPixelsTheFileIsTheBareHeader) {
   const ScratchFolder folder;
   WriteConsistencyGraph(folder / "g.bin", {4, 3, {}});
-  EXPECT_EQ(ReadBytes(folder / "g.bin"), "4&3&1&");
+  EXPECT_EQ(ReadFile(folder / "g.bin"), "4&3&1&");
   EXPECT_TRUE(ReadConsistencyGraph(folder / "g.bin").data.empty());
 }
 
@@ -34,7 +34,7 @@ TEST(ConsistencyGraph, EveryPrefixThatCutsAGroupIsRefused) {
   for (size_t length = 0; length < bytes.size(); ++length) {
     if (length == 6) continue;  // the bare header is a valid graph
     SCOPED_TRACE(length);
-    WriteBytes(folder / "g.bin", bytes.substr(0, length));
+    WriteFile(folder / "g.bin", bytes.substr(0, length));
     ExpectError(ErrorCode::kBadInput, "g.bin", [&] {
       ReadConsistencyGraph(folder / "g.bin");
     });
@@ -50,7 +50,7 @@ TEST(ConsistencyGraph, HostileGroupsAreRefusedByReaderAndWriter) {
                                            {0, 0, -5, 1},
                                            {0, 0, 2147483647, 1},
                                            {0, 0, 1, -1}}) {
-    WriteBytes(folder / "g.bin", GraphBytes("4&3&1&", data));
+    WriteFile(folder / "g.bin", GraphBytes("4&3&1&", data));
     ExpectError(ErrorCode::kBadInput, "g.bin", [&] {
       ReadConsistencyGraph(folder / "g.bin");
     });
@@ -58,7 +58,7 @@ TEST(ConsistencyGraph, HostileGroupsAreRefusedByReaderAndWriter) {
       WriteConsistencyGraph(folder / "h.bin", {4, 3, data});
     });
   }
-  WriteBytes(folder / "g.bin", "4&3&3&");
+  WriteFile(folder / "g.bin", "4&3&3&");
   ExpectError(ErrorCode::kBadInput, "g.bin", [&] {
     ReadConsistencyGraph(folder / "g.bin");
   });

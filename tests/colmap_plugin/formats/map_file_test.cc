@@ -23,7 +23,7 @@ std::string SmallNormalMapBytes() {
 TEST(MapFile, WritesHeaderAndPlanesByteForByte) {
   const ScratchFolder folder;
   WriteMap(folder / "m.bin", SmallNormalMap());
-  EXPECT_EQ(ReadBytes(folder / "m.bin"), SmallNormalMapBytes());
+  EXPECT_EQ(ReadFile(folder / "m.bin"), SmallNormalMapBytes());
 }
 
 TEST(MapFile, ReadsWhatItWroteAndCreatesFolders) {
@@ -42,7 +42,7 @@ TEST(MapFile, HeaderDoesNotDependOnTheLocale) {
   const ScratchFolder folder;
   const CommaLocale locale;
   WriteMap(folder / "m.bin", {1234, 1, 1, std::vector<float>(1234, 0.5f)});
-  EXPECT_EQ(ReadBytes(folder / "m.bin").substr(0, 9), "1234&1&1&");
+  EXPECT_EQ(ReadFile(folder / "m.bin").substr(0, 9), "1234&1&1&");
   EXPECT_EQ(ReadMapHeader(folder / "m.bin").width, 1234);
 }
 
@@ -50,7 +50,7 @@ TEST(MapFile, AllowsBlanksInTheHeaderButEatsNoDataByte) {
   const ScratchFolder folder;
   // 0x20 and 0x0A are data here: the reader must stop right after the third
   // '&'.
-  WriteBytes(folder / "m.bin", " 1 & 1 & 1 & \n  ");
+  WriteFile(folder / "m.bin", " 1 & 1 & 1 & \n  ");
   const Map map = ReadMap(folder / "m.bin");
   const std::string data = " \n  ";
   EXPECT_EQ(std::memcmp(map.data.data(), data.data(), 4), 0);
@@ -61,14 +61,14 @@ TEST(MapFile, EveryProperPrefixAndEveryExtraByteIsRefused) {
   const std::string bytes = SmallNormalMapBytes();
   for (size_t length = 0; length < bytes.size(); ++length) {
     SCOPED_TRACE(length);
-    WriteBytes(folder / "m.bin", bytes.substr(0, length));
+    WriteFile(folder / "m.bin", bytes.substr(0, length));
     ExpectError(
         ErrorCode::kBadInput, "m.bin", [&] { ReadMap(folder / "m.bin"); });
     ExpectError(ErrorCode::kBadInput, "m.bin", [&] {
       ReadMapHeader(folder / "m.bin");
     });
   }
-  WriteBytes(folder / "m.bin", bytes + '\0');
+  WriteFile(folder / "m.bin", bytes + '\0');
   ExpectError(
       ErrorCode::kBadInput, "m.bin", [&] { ReadMap(folder / "m.bin"); });
 }
@@ -94,8 +94,8 @@ TEST(MapFile, HostileHeadersAreRefusedWithoutAllocation) {
         std::string(5, '\0')}) {
     SCOPED_TRACE(header.substr(0, 40));
     for (const size_t num_values : {0, 6}) {
-      WriteBytes(folder / "m.bin",
-                 header + std::string(num_values * sizeof(float), '\0'));
+      WriteFile(folder / "m.bin",
+                header + std::string(num_values * sizeof(float), '\0'));
       ExpectError(
           ErrorCode::kBadInput, "m.bin", [&] { ReadMap(folder / "m.bin"); });
     }
@@ -160,7 +160,7 @@ TEST(MapFile, FileSizeLimitLeavesTheOldFileAndNoTemporary) {
   EXPECT_EQ(code, ErrorCode::kOutOfResources);
   EXPECT_THAT(message, testing::HasSubstr("m.bin"));
   EXPECT_THAT(message, testing::HasSubstr("8192 bytes were written"));
-  EXPECT_EQ(ReadBytes(folder / "m.bin"), SmallNormalMapBytes());
+  EXPECT_EQ(ReadFile(folder / "m.bin"), SmallNormalMapBytes());
   EXPECT_EQ(folder.CountFiles(), 1u);
 }
 

@@ -14,7 +14,7 @@ using testing::ElementsAre;
 class PatchMatchCfg : public testing::Test {
  protected:
   std::vector<PatchMatchCfgEntry> Read(std::string_view text) {
-    WriteBytes(path_, text);
+    WriteFile(path_, text);
     return ReadPatchMatchCfg(path_);
   }
 
@@ -117,7 +117,7 @@ TEST_F(PatchMatchCfg, ALineOfTenMegabytesIsReadInASecond) {
       std::chrono::steady_clock::now() - start;
   EXPECT_EQ(entries.at(0).src_names.size(), num_names);
   EXPECT_LT(time.count(), 5.0);
-  WriteBytes(path_, "r\n__auto__, " + std::string(10'000'000, 'x'));
+  WriteFile(path_, "r\n__auto__, " + std::string(10'000'000, 'x'));
   try {
     ReadPatchMatchCfg(path_);
     ADD_FAILURE();
@@ -139,7 +139,7 @@ TEST_F(PatchMatchCfg, WritesColmapsLinesByteForByte) {
   all.ref_name = "b.jpg";
   all.sources = Sources::kAll;
   WritePatchMatchCfg(path_, {automatic, all, list});
-  EXPECT_EQ(ReadBytes(path_),
+  EXPECT_EQ(ReadFile(path_),
             "a.jpg\n__auto__, 2000\nb.jpg\n__all__\n"
             "c, d.jpg\na.jpg, b.jpg, \n");
 }
@@ -184,7 +184,7 @@ TEST_F(PatchMatchCfg, NamesThatTheGrammarCannotHoldAreRefused) {
 
 TEST_F(PatchMatchCfg, FusionCfgIsOneNamePerLine) {
   WriteFusionCfg(folder_ / "fusion.cfg", {"a, b.jpg", "#c.jpg"});
-  EXPECT_EQ(ReadBytes(folder_ / "fusion.cfg"), "a, b.jpg\n#c.jpg\n");
+  EXPECT_EQ(ReadFile(folder_ / "fusion.cfg"), "a, b.jpg\n#c.jpg\n");
 }
 
 }  // namespace

@@ -19,8 +19,8 @@ class Pmvs : public testing::Test {
 
   void WriteImagePlaceholders(int num_images) {
     for (int i = 0; i < num_images; ++i) {
-      WriteBytes(folder_ / ("visualize/0000000" + std::to_string(i) + ".jpg"),
-                 "");
+      WriteFile(folder_ / ("visualize/0000000" + std::to_string(i) + ".jpg"),
+                "");
     }
   }
 
@@ -30,8 +30,8 @@ class Pmvs : public testing::Test {
     text.imbue(std::locale::classic());
     text.precision(17);
     text << "CONTOUR\n" << matrix << "\n";
-    WriteBytes(folder_ / ("txt/0000000" + std::to_string(index) + ".txt"),
-               text.str());
+    WriteFile(folder_ / ("txt/0000000" + std::to_string(index) + ".txt"),
+              text.str());
   }
 
   ScratchFolder folder_;
@@ -45,7 +45,7 @@ const char* const kBundle =
 
 TEST_F(Pmvs, BundleTurnsFromBundlersAxesToOurs) {
   const CommaLocale locale;
-  WriteBytes(folder_ / "bundle.rd.out", kBundle);
+  WriteFile(folder_ / "bundle.rd.out", kBundle);
   const PmvsModel model = Read();
   EXPECT_FALSE(model.visible_images);
   ASSERT_EQ(model.sparse.images.size(), 2u);
@@ -68,8 +68,8 @@ TEST_F(Pmvs, BundleTurnsFromBundlersAxesToOurs) {
 }
 
 TEST_F(Pmvs, AnUnregisteredBundleImageIsMarkedNotFatal) {
-  WriteBytes(folder_ / "bundle.rd.out",
-             "# Bundle file v0.3\n1 0\n0 0 0 0 0 0 0 0 0 0 0 0 0 0 0\n");
+  WriteFile(folder_ / "bundle.rd.out",
+            "# Bundle file v0.3\n1 0\n0 0 0 0 0 0 0 0 0 0 0 0 0 0 0\n");
   EXPECT_TRUE(Read()
                   .sparse.images[0]
                   .cam_from_world_rotation.coeffs()
@@ -79,8 +79,8 @@ TEST_F(Pmvs, AnUnregisteredBundleImageIsMarkedNotFatal) {
 }
 
 TEST_F(Pmvs, BundleWinsOverVisDat) {
-  WriteBytes(folder_ / "bundle.rd.out", kBundle);
-  WriteBytes(folder_ / "vis.dat", "broken");
+  WriteFile(folder_ / "bundle.rd.out", kBundle);
+  WriteFile(folder_ / "vis.dat", "broken");
   EXPECT_EQ(Read().sparse.images.size(), 2u);
 }
 
@@ -98,7 +98,7 @@ TEST_F(Pmvs, ProjectionMatricesAreSplitWhateverTheirScaleAndSign) {
   WriteProjection(0, projection);
   WriteProjection(1, -projection);
   WriteProjection(2, 0.001 * projection);
-  WriteBytes(folder_ / "vis.dat", "VISDATA\n3\n0 2 1 2\n1 2 1 0\n2 0\n");
+  WriteFile(folder_ / "vis.dat", "VISDATA\n3\n0 2 1 2\n1 2 1 0\n2 0\n");
   const PmvsModel model = Read();
   ASSERT_EQ(model.sparse.images.size(), 3u);
   for (const SparseImage& image : model.sparse.images) {
@@ -126,13 +126,13 @@ TEST_F(Pmvs, ProjectionMatricesAreSplitWhateverTheirScaleAndSign) {
 TEST_F(Pmvs, ASingularProjectionIsMarkedNotFatal) {
   WriteImagePlaceholders(1);
   WriteProjection(0, Eigen::Matrix<double, 3, 4>::Zero());
-  WriteBytes(folder_ / "vis.dat", "VISDATA\n1\n0 0\n");
+  WriteFile(folder_ / "vis.dat", "VISDATA\n1\n0 0\n");
   EXPECT_FALSE(
       Read().sparse.images[0].cam_from_world_rotation.coeffs().allFinite());
 }
 
 TEST_F(Pmvs, WithoutVisibilitySourcesAreAutomatic) {
-  WriteBytes(folder_ / "bundle.rd.out", kBundle);
+  WriteFile(folder_ / "bundle.rd.out", kBundle);
   const auto entries = MakePmvsCfgEntries(Read(), {0});
   ASSERT_EQ(entries.size(), 1u);
   EXPECT_EQ(entries[0].ref_name, "00000000.jpg");
@@ -143,7 +143,7 @@ TEST_F(Pmvs, WithoutVisibilitySourcesAreAutomatic) {
 TEST_F(Pmvs, OptionFileListsOrRangesAndTheLastLineCounts) {
   const auto path = folder_ / "option-all";
   const auto read = [&](std::string_view text) {
-    WriteBytes(path, text);
+    WriteFile(path, text);
     return ReadPmvsOptionFile(path, 10);
   };
   EXPECT_THAT(read("level 1\n# timages 1 9\ntimages 3 0 4 2\nsetEdge 0\n"),
@@ -168,12 +168,12 @@ TEST_F(Pmvs, HostileOptionLinesNameTheLine) {
                            "timages 2147483647 0",
                            "timages 99999999999 0"}) {
     SCOPED_TRACE(line);
-    WriteBytes(path, std::string("level 1\n") + line + "\n");
+    WriteFile(path, std::string("level 1\n") + line + "\n");
     ExpectError(ErrorCode::kBadInput, "option-all:2:", [&] {
       ReadPmvsOptionFile(path, 10);
     });
   }
-  WriteBytes(path, "level 1\n");
+  WriteFile(path, "level 1\n");
   ExpectError(ErrorCode::kBadInput, "option-all", [&] {
     ReadPmvsOptionFile(path, 10);
   });
@@ -195,12 +195,12 @@ TEST_F(Pmvs, HostileBundlesAreRefused) {
                                   replaced("3 1 7", "2147483646 1 7"),
                                   replaced("3 1 7", "3 2 7"),
                                   replaced("3 1 7", "3 -1 7")}) {
-    WriteBytes(folder_ / "bundle.rd.out", text);
+    WriteFile(folder_ / "bundle.rd.out", text);
     ExpectError(ErrorCode::kBadInput, "bundle.rd.out", [&] { Read(); });
   }
   // Nothing shorter is complete, except for the last digit of the last number.
   for (size_t length = 0; length + 2 < bundle.size(); ++length) {
-    WriteBytes(folder_ / "bundle.rd.out", bundle.substr(0, length));
+    WriteFile(folder_ / "bundle.rd.out", bundle.substr(0, length));
     ExpectError(ErrorCode::kBadInput, "bundle.rd.out", [&] { Read(); });
   }
 }
@@ -215,11 +215,11 @@ TEST_F(Pmvs, HostileVisibilityIsRefused) {
                            "VISDATA 1 0 1 1",
                            "VISDATA 1 0 2147483646 0",
                            "VISDATA 1 0 -1"}) {
-    WriteBytes(folder_ / "vis.dat", text);
+    WriteFile(folder_ / "vis.dat", text);
     ExpectError(ErrorCode::kBadInput, "vis.dat", [&] { Read(); });
   }
-  WriteBytes(folder_ / "vis.dat", "VISDATA 1 0 0");
-  WriteBytes(folder_ / "txt/00000000.txt", "CONTOUR 1 2 3");
+  WriteFile(folder_ / "vis.dat", "VISDATA 1 0 0");
+  WriteFile(folder_ / "txt/00000000.txt", "CONTOUR 1 2 3");
   ExpectError(ErrorCode::kBadInput, "00000000.txt", [&] { Read(); });
 }
 

@@ -181,12 +181,12 @@ TEST(HostileModel, EveryProperPrefixAndEveryExtraByteOfABinaryFileIsRefused) {
       SCOPED_TRACE(name + " " + std::to_string(length));
       std::string damaged = bytes;
       damaged.resize(length);
-      WriteBytes(folder / name, damaged);
+      WriteFile(folder / name, damaged);
       ExpectError(ErrorCode::kBadInput, (folder / name).string(), [&] {
         ReadSparseModel(folder.path());
       });
     }
-    WriteBytes(folder / name, bytes);
+    WriteFile(folder / name, bytes);
   }
   EXPECT_NO_THROW(ReadSparseModel(folder.path()));
 }
@@ -205,7 +205,7 @@ void FlipBytes(const ModelFiles& tiny, unsigned seed) {
     for (unsigned flips = 1 + random() % 4; flips > 0; --flips) {
       bytes[random() % bytes.size()] = static_cast<char>(random());
     }
-    WriteBytes(folder / file->first, bytes);
+    WriteFile(folder / file->first, bytes);
     try {
       const SparseModel model = ReadSparseModel(folder.path());
       for (const SparsePoint& point : model.points) {
@@ -217,7 +217,7 @@ void FlipBytes(const ModelFiles& tiny, unsigned seed) {
       EXPECT_EQ(error.code(), ErrorCode::kBadInput);
       ++num_errors;
     }
-    WriteBytes(folder / file->first, file->second);
+    WriteFile(folder / file->first, file->second);
   }
   EXPECT_GT(num_errors, 100);
 }

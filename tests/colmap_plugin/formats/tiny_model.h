@@ -130,7 +130,7 @@ inline ModelFiles Joined(ModelFiles a, const ModelFiles& b) {
 
 inline void WriteModel(const std::filesystem::path& folder,
                        const ModelFiles& files) {
-  for (const auto& [name, bytes] : files) WriteBytes(folder / name, bytes);
+  for (const auto& [name, bytes] : files) WriteFile(folder / name, bytes);
 }
 
 }  // namespace hpm

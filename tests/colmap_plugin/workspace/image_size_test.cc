@@ -27,10 +27,10 @@ class ImageSizeTest : public ::testing::Test {
     return size ? fmt::format("{}x{}", size->width, size->height) : "none";
   }
   std::string SizeOf(const std::string& bytes) {
-    WriteText(folder_.path() / "image", bytes);
+    WriteFile(folder_.path() / "image", bytes);
     return SizeOfFile();
   }
-  TemporaryFolder folder_;
+  ScratchFolder folder_;
 };
 
 TEST_F(ImageSizeTest, IsReadFromEveryUsualType) {
@@ -76,7 +76,7 @@ TEST_F(ImageSizeTest, BottomUpAndTopDownBitmapsHaveTheSameSize) {
 TEST_F(ImageSizeTest, APrefixGivesTheSizeOrNothing) {
   for (const char* extension : {".jpg", ".png", ".bmp", ".tif"}) {
     const std::string start = Encoded(extension, 37, 21).substr(0, 700);
-    WriteText(folder_.path() / "image", start);
+    WriteFile(folder_.path() / "image", start);
     for (size_t size = start.size(); size-- > 0;) {
       std::filesystem::resize_file(folder_.path() / "image", size);
       EXPECT_THAT(SizeOfFile(), testing::AnyOf("37x21", "none"))

@@ -43,10 +43,10 @@ TEST_F(OutputCheckTest, CreatesEveryFolderAndLeavesNoTrialFile) {
 TEST_F(OutputCheckTest, WritesFusionCfgOnlyIfThereIsNone) {
   const Workspace workspace = files_.Open();
   PrepareOutputs(workspace, problems_, 0);
-  EXPECT_EQ(ReadText(workspace.FusionCfgPath()), "cam1/day2/x.jpg\na.jpg\n");
-  WriteText(workspace.FusionCfgPath(), "a.jpg\n");
+  EXPECT_EQ(ReadFile(workspace.FusionCfgPath()), "cam1/day2/x.jpg\na.jpg\n");
+  WriteFile(workspace.FusionCfgPath(), "a.jpg\n");
   PrepareOutputs(workspace, problems_, 0);
-  EXPECT_EQ(ReadText(workspace.FusionCfgPath()), "a.jpg\n");
+  EXPECT_EQ(ReadFile(workspace.FusionCfgPath()), "a.jpg\n");
 }
 
 TEST_F(OutputCheckTest, TooSmallADiskIsToldWithNeededAndFreeBytes) {
@@ -62,7 +62,7 @@ TEST_F(OutputCheckTest, TooSmallADiskIsToldWithNeededAndFreeBytes) {
 
 TEST_F(OutputCheckTest, AFileInPlaceOfAFolderIsNamed) {
   const Workspace workspace = files_.Open();
-  WriteText(workspace.StereoPath() / "normal_maps", "a file");
+  WriteFile(workspace.StereoPath() / "normal_maps", "a file");
   const auto error = ErrorOf([&] { PrepareOutputs(workspace, problems_, 0); });
   ASSERT_TRUE(error);
   EXPECT_EQ(error->code(), ErrorCode::kBadInput);
@@ -116,10 +116,10 @@ TEST_F(OutputCheckTest, MapBytesAreTheSizesOfTheFiles) {
 }
 
 TEST(RunRecord, IsReadableJson) {
-  const TemporaryFolder state;
+  const ScratchFolder state;
   WriteRunRecord(state.path(), {{"images", 3}, {"name", "\xff"}});
   EXPECT_EQ(
-      nlohmann::json::parse(ReadText(state.path() / "run.json"))["images"], 3);
+      nlohmann::json::parse(ReadFile(state.path() / "run.json"))["images"], 3);
 }
 
 }  // namespace

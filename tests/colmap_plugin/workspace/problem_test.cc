@@ -117,7 +117,7 @@ TEST_F(ProblemTest, AutoWithoutNumberIsAnError) {
 
 TEST_F(ProblemTest, ConfigPathReplacesTheWorkspacesFile) {
   options_.config_path = files_.path() / "other.cfg";
-  WriteText(options_.config_path, "3.jpg\n1.jpg\n");
+  WriteFile(options_.config_path, "3.jpg\n1.jpg\n");
   const auto problems = Read("0.jpg\n1.jpg\n");
   ASSERT_EQ(problems.size(), 1u);
   EXPECT_EQ(problems[0].ref_image, 3);

@@ -54,13 +54,13 @@ class RunLockTest : public ::testing::Test {
     nlohmann::json json;
     {
       const RunLock held(state());
-      json = nlohmann::json::parse(ReadText(lock()));
+      json = nlohmann::json::parse(ReadFile(lock()));
     }
     change(json);
     return json.dump();
   }
 
-  TemporaryFolder folder_;
+  ScratchFolder folder_;
 };
 
 TEST_F(RunLockTest, IsThereWhileHeldAndGoneAfterwards) {
@@ -99,7 +99,7 @@ TEST_F(RunLockTest, TheLockOfAKilledProcessIsTakenOver) {
   Kill(owner);
   ASSERT_TRUE(std::filesystem::exists(lock()));
   const RunLock second(state());
-  EXPECT_THAT(ReadText(lock()), HasSubstr(std::to_string(getpid())));
+  EXPECT_THAT(ReadFile(lock()), HasSubstr(std::to_string(getpid())));
 }
 
 TEST_F(RunLockTest, AKilledProcessThatNobodyWaitedForIsDead) {
@@ -120,7 +120,7 @@ TEST_F(RunLockTest, AReusedProcessIdIsToldApartByItsStartTime) {
   const std::string other = ChangedLock([](nlohmann::json& json) {
     json["start_time"] = json["start_time"].get<uint64_t>() - 1;
   });
-  WriteText(lock(), other);
+  WriteFile(lock(), other);
   EXPECT_FALSE(ErrorOf([&] { RunLock second(state()); }));
 }
 
@@ -130,11 +130,11 @@ TEST_F(RunLockTest, OtherHostsAndContainersAreNeverTakenOver) {
       json[key] = "elsewhere";
       json["start_time"] = 1;
     });
-    WriteText(lock(), foreign);
+    WriteFile(lock(), foreign);
     const auto error = ErrorOf([&] { RunLock second(state()); });
     ASSERT_TRUE(error) << key;
     EXPECT_EQ(error->code(), ErrorCode::kLocked);
-    EXPECT_EQ(ReadText(lock()), foreign);
+    EXPECT_EQ(ReadFile(lock()), foreign);
     std::filesystem::remove(lock());
   }
 }
@@ -147,7 +147,7 @@ TEST_F(RunLockTest, DamagedLocksAreTakenOver) {
         std::string("{\"host\":\"a\",\"pid_namespace\":\"\",\"pid\":0,"
                     "\"start_time\":0}"),
         std::string(100000, '[')}) {
-    WriteText(lock(), text);
+    WriteFile(lock(), text);
     EXPECT_FALSE(ErrorOf([&] { RunLock second(state()); }))
         << text.substr(0, 50);
     EXPECT_FALSE(std::filesystem::exists(lock()));
@@ -155,7 +155,7 @@ TEST_F(RunLockTest, DamagedLocksAreTakenOver) {
 }
 
 TEST_F(RunLockTest, MessagesShowNoControlCharacters) {
-  WriteText(lock(), ChangedLock([](nlohmann::json& json) {
+  WriteFile(lock(), ChangedLock([](nlohmann::json& json) {
               json["host"] = "a\x1b[2J\nb";
             }));
   const auto error = ErrorOf([&] { RunLock second(state()); });
@@ -167,9 +167,9 @@ TEST_F(RunLockTest, MessagesShowNoControlCharacters) {
 TEST_F(RunLockTest, OnlyTheOwnLockIsRemoved) {
   {
     const RunLock held(state());
-    WriteText(lock(), "another run");
+    WriteFile(lock(), "another run");
   }
-  EXPECT_EQ(ReadText(lock()), "another run");
+  EXPECT_EQ(ReadFile(lock()), "another run");
 }
 
 TEST_F(RunLockTest, LinksAreNotFollowed) {
@@ -183,7 +183,7 @@ TEST_F(RunLockTest, LinksAreNotFollowed) {
 }
 
 TEST_F(RunLockTest, AFolderThatCannotBeMadeIsNamed) {
-  WriteText(folder_.path() / "stereo", "a file");
+  WriteFile(folder_.path() / "stereo", "a file");
   const auto error = ErrorOf([&] { RunLock held(state()); });
   ASSERT_TRUE(error);
   EXPECT_EQ(error->code(), ErrorCode::kBadInput);
@@ -196,11 +196,11 @@ TEST_F(RunLockTest, OneOfManyTakersIsInside) {
   const pid_t owner = ForkOwner(state());
   ASSERT_GT(owner, 0);
   Kill(owner);
-  const std::string stale = ReadText(lock());
+  const std::string stale = ReadFile(lock());
   const std::string inside = (folder_.path() / "inside").string();
   constexpr int kNumRounds = 20, kNumTakers = 8;
   for (int round = 0; round < kNumRounds; ++round) {
-    WriteText(lock(), stale);
+    WriteFile(lock(), stale);
     std::vector<pid_t> takers;
     for (int i = 0; i < kNumTakers; ++i) {
       const pid_t pid = fork();

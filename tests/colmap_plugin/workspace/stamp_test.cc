@@ -6,7 +6,7 @@ namespace hpm {
 namespace {
 
 TEST(Stamp, GivesBackTheFingerprintPerImageAndStage) {
-  const TemporaryFolder state;
+  const ScratchFolder state;
   WriteStamp(
       state.path(), "cam1/a.jpg", "photometric", "1234", {{"seconds", 1.5}});
   WriteStamp(state.path(), "cam1/a.jpg", "geometric", "5678", nullptr);
@@ -17,33 +17,33 @@ TEST(Stamp, GivesBackTheFingerprintPerImageAndStage) {
   EXPECT_EQ(ReadStampFingerprint(state.path(), "cam2/a.jpg", "geometric"),
             std::nullopt);
   const nlohmann::json stamp = nlohmann::json::parse(
-      ReadText(state.path() / "stamps/cam1/a.jpg.photometric.json"));
+      ReadFile(state.path() / "stamps/cam1/a.jpg.photometric.json"));
   EXPECT_EQ(stamp["seconds"], 1.5);
 }
 
 TEST(Stamp, IsReplacedByALaterOne) {
-  const TemporaryFolder state;
+  const ScratchFolder state;
   WriteStamp(state.path(), "a.jpg", "geometric", "old", nullptr);
   WriteStamp(state.path(), "a.jpg", "geometric", "new", nullptr);
   EXPECT_EQ(ReadStampFingerprint(state.path(), "a.jpg", "geometric"), "new");
 }
 
 TEST(Stamp, StatisticsCannotReplaceTheFingerprint) {
-  const TemporaryFolder state;
+  const ScratchFolder state;
   WriteStamp(
       state.path(), "a.jpg", "geometric", "right", {{"fingerprint", "wrong"}});
   EXPECT_EQ(ReadStampFingerprint(state.path(), "a.jpg", "geometric"), "right");
 }
 
 TEST(Stamp, StatisticsNeedNotBeUtf8) {
-  const TemporaryFolder state;
+  const ScratchFolder state;
   WriteStamp(
       state.path(), "a.jpg", "geometric", "1", {{"source", "\xff\xfe.jpg"}});
   EXPECT_EQ(ReadStampFingerprint(state.path(), "a.jpg", "geometric"), "1");
 }
 
 TEST(Stamp, EveryProperPrefixCountsAsAbsent) {
-  const TemporaryFolder state;
+  const ScratchFolder state;
   WriteStamp(state.path(),
              "a.jpg",
              "geometric",
@@ -61,7 +61,7 @@ TEST(Stamp, EveryProperPrefixCountsAsAbsent) {
 }
 
 TEST(Stamp, HostileContentsCountAsAbsent) {
-  const TemporaryFolder state;
+  const ScratchFolder state;
   const std::filesystem::path path =
       StampPath(state.path(), "a.jpg", "geometric");
   for (const std::string& text :
@@ -70,7 +70,7 @@ TEST(Stamp, HostileContentsCountAsAbsent) {
         std::string("{\"other\": \"7\"}"),
         std::string(500000, '['),
         std::string("{\"fingerprint\": \"7\"}") + std::string(2 << 20, ' ')}) {
-    WriteText(path, text);
+    WriteFile(path, text);
     EXPECT_EQ(ReadStampFingerprint(state.path(), "a.jpg", "geometric"),
               std::nullopt)
         << text.substr(0, 30);
@@ -82,7 +82,7 @@ TEST(Stamp, HostileContentsCountAsAbsent) {
 }
 
 TEST(Stamp, RefusesNamesOutsideTheFolder) {
-  const TemporaryFolder state;
+  const ScratchFolder state;
   for (const char* name :
        {"../a.jpg", "/a.jpg", "x/../../a.jpg", "", "a\n.jpg"}) {
     const auto error = ErrorOf(

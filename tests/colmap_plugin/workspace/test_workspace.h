@@ -3,10 +3,8 @@
 
 #include "colmap_plugin/workspace/workspace.h"
 #include "src/base/error.h"
+#include "tests/base/scratch_folder.h"
 
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <functional>
 #include <optional>
 #include <string>
@@ -18,40 +16,6 @@
 #include <gtest/gtest.h>
 
 namespace hpm {
-
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name =
-        (std::filesystem::temp_directory_path() / "hpm_mvs_test.XXXXXX")
-            .string();
-    if (mkdtemp(name.data()) == nullptr)
-      throw std::runtime_error("cannot create " + name);
-    path_ = name;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
-inline void WriteText(const std::filesystem::path& path,
-                      const std::string& text) {
-  std::filesystem::create_directories(path.parent_path());
-  std::ofstream(path, std::ios::binary) << text;
-}
-
-inline std::string ReadText(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file),
-          std::istreambuf_iterator<char>()};
-}
 
 // Enough of a PNG for its size to be read.
 inline std::string PngHeader(uint32_t width, uint32_t height) {
@@ -110,15 +74,15 @@ class TestWorkspace {
   }
 
   void WriteCfg(const std::string& text) {
-    WriteText(path() / "stereo/patch-match.cfg", text);
+    WriteFile(path() / "stereo/patch-match.cfg", text);
   }
 
   const std::filesystem::path& path() const { return folder_.path(); }
 
   Workspace Open(int max_image_size = -1) {
-    WriteText(path() / "sparse/cameras.txt", cameras_);
-    WriteText(path() / "sparse/images.txt", images_);
-    WriteText(path() / "sparse/points3D.txt", points_);
+    WriteFile(path() / "sparse/cameras.txt", cameras_);
+    WriteFile(path() / "sparse/images.txt", images_);
+    WriteFile(path() / "sparse/points3D.txt", points_);
     WorkspaceOptions options;
     options.path = path();
     options.max_image_size = max_image_size;
@@ -143,7 +107,7 @@ class TestWorkspace {
   std::vector<std::string> Notes() const { return LinesOf(LogLevel::kInfo); }
 
  private:
-  TemporaryFolder folder_;
+  ScratchFolder folder_;
   std::string cameras_;
   std::string images_;
   std::string points_;

@@ -42,9 +42,9 @@ TEST(Workspace, ScalesCamerasToTheImageFilesWithOneNote) {
   TestWorkspace files;
   for (const char* name : {"a.png", "b.png", "c.png"})
     files.AddImage(name, {0, 0, 0});
-  WriteText(files.path() / "images/a.png", PngHeader(160, 120));
-  WriteText(files.path() / "images/b.png", PngHeader(100, 75));
-  WriteText(files.path() / "images/c.png", PngHeader(320, 240));
+  WriteFile(files.path() / "images/a.png", PngHeader(160, 120));
+  WriteFile(files.path() / "images/b.png", PngHeader(100, 75));
+  WriteFile(files.path() / "images/c.png", PngHeader(320, 240));
   const Workspace workspace = files.Open();
   EXPECT_EQ(workspace.camera(0).width, 160);
   EXPECT_EQ(workspace.camera(1).width, 100);
@@ -60,7 +60,7 @@ TEST(Workspace, ScalesCamerasToTheImageFilesWithOneNote) {
 TEST(Workspace, WarnsOfOtherProportions) {
   TestWorkspace files;
   files.AddImage("turned.png", {0, 0, 0});
-  WriteText(files.path() / "images/turned.png", PngHeader(120, 160));
+  WriteFile(files.path() / "images/turned.png", PngHeader(120, 160));
   files.Open();
   EXPECT_THAT(files.Warnings(),
               ElementsAre(HasSubstr("turned.png is 120x160")));
@@ -136,14 +136,14 @@ TEST(Workspace, FormatNameIgnoresCaseAndOthersAreUsageErrors) {
 }
 
 TEST(Workspace, PmvsFolderGetsItsStereoFolderAndCfgFiles) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   const std::string identity = "1 0 0\n0 1 0\n0 0 1\n0 0 0\n";
-  WriteText(folder.path() / "bundle.rd.out",
+  WriteFile(folder.path() / "bundle.rd.out",
             "# Bundle file v0.3\n2 1\n100 0 0\n" + identity + "110 0 0\n" +
                 identity + "0 0 -5\n1 2 3\n2 0 0 0 0 1 0 0 0\n");
-  WriteText(folder.path() / "visualize/00000000.jpg", PngHeader(160, 120));
-  WriteText(folder.path() / "visualize/00000001.jpg", PngHeader(80, 60));
-  WriteText(folder.path() / "my-option", "level 1\ntimages -1 0 2\n");
+  WriteFile(folder.path() / "visualize/00000000.jpg", PngHeader(160, 120));
+  WriteFile(folder.path() / "visualize/00000001.jpg", PngHeader(80, 60));
+  WriteFile(folder.path() / "my-option", "level 1\ntimages -1 0 2\n");
   WorkspaceOptions options;
   options.path = folder.path();
   options.format = "pmvs";
@@ -155,7 +155,7 @@ TEST(Workspace, PmvsFolderGetsItsStereoFolderAndCfgFiles) {
   EXPECT_EQ(workspace.camera(0).fx, 100);
   EXPECT_EQ(workspace.camera(0).cx, 79.5f);
   EXPECT_EQ(workspace.camera(1).cy, 29.5f);
-  EXPECT_EQ(ReadText(workspace.FusionCfgPath()),
+  EXPECT_EQ(ReadFile(workspace.FusionCfgPath()),
             "00000000.jpg\n00000001.jpg\n");
   const auto entries = ReadPatchMatchCfg(workspace.PatchMatchCfgPath());
   ASSERT_EQ(entries.size(), 2u);
@@ -164,10 +164,10 @@ TEST(Workspace, PmvsFolderGetsItsStereoFolderAndCfgFiles) {
 }
 
 TEST(Workspace, PmvsImageWithoutASizeIsNamed) {
-  const TemporaryFolder folder;
-  WriteText(folder.path() / "bundle.rd.out",
+  const ScratchFolder folder;
+  WriteFile(folder.path() / "bundle.rd.out",
             "# Bundle file v0.3\n1 0\n100 0 0\n1 0 0\n0 1 0\n0 0 1\n0 0 0\n");
-  WriteText(folder.path() / "option-all", "timages -1 0 1\n");
+  WriteFile(folder.path() / "option-all", "timages -1 0 1\n");
   WorkspaceOptions options;
   options.path = folder.path();
   options.format = "PMVS";
