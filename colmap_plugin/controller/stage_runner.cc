@@ -195,6 +195,8 @@ void StageRunner::Publish(int stage,
         static_cast<double>(backend_->num_cost_evaluations()) /
         static_cast<double>(map.planes.size());
   }
+  // Before the maps are made here and the next problem's inputs are read.
+  backend_->ForgetViews();
 
   PhaseTimer timer(&result->seconds, "write");
   const DepthAndNormal maps =

@@ -14,7 +14,7 @@ namespace hpm {
 namespace {
 
 // Raise when the same options give other maps.
-constexpr int kAlgorithmVersion = 3;
+constexpr int kAlgorithmVersion = 4;
 
 std::vector<Stage> MakeStages(const Schedule& schedule) {
   std::vector<Stage> stages;

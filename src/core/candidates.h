@@ -34,7 +34,7 @@ HPM_HD void ChooseViews(const VisitParams& params,
                         Candidates* candidates) {
   uint32_t trusted = state.masks[row * state.width + col];
   uint32_t once = trusted;
-  uint32_t masks[4];
+  uint32_t masks[4] = {};
   int num_masks = 0;
   const int d = pattern.mask_distance;
   const int dcol[4] = {0, 0, -d, d};
@@ -53,11 +53,11 @@ HPM_HD void ChooseViews(const VisitParams& params,
   candidates->num_views = 0;
   for (int j = 0; j < params.num_views; ++j) {
     if (!(trusted >> j & 1)) continue;
-    float votes = 0;
-    for (int b = 0; b < num_masks; ++b) {
-      votes += (masks[b] >> j & 1) ? 0.9f : 0.1f;
-    }
-    candidates->votes[candidates->num_views] = votes;
+    uint32_t num_votes = 0;
+    for (int b = 0; b < 4; ++b) num_votes += masks[b] >> j & 1;
+    candidates->votes[candidates->num_views] =
+        0.1f * static_cast<float>(num_masks) +
+        0.8f * static_cast<float>(num_votes);
     candidates->view[candidates->num_views++] = static_cast<uint8_t>(j);
   }
 }

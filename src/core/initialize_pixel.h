@@ -20,8 +20,12 @@ constexpr float kPriorDepthSpread = 0.06f;        // relative
 constexpr float kPriorNormalSpread = 0.0942478f;  // radians per axis, 0.03 pi
 
 // Mean of the best kNumInitialViews costs below kMaxCost and the mask of views
-// with such a cost; kMaxCost and an empty mask if there is none.
-HPM_HD float BestViewsCost(const float* costs, int num_views, uint32_t* mask) {
+// with such a cost; costs[k] belongs to views[k]. kMaxCost and an empty mask if
+// there is none.
+HPM_HD float BestViewsCost(const float* costs,
+                           const uint8_t* views,
+                           int num_views,
+                           uint32_t* mask) {
   float best[kNumInitialViews];
   int num_best = 0;
   for (int j = 0; j < num_views; ++j) {
@@ -39,9 +43,29 @@ HPM_HD float BestViewsCost(const float* costs, int num_views, uint32_t* mask) {
   float sum = 0;
   for (int k = 0; k < num_best; ++k) sum += best[k];
   for (int j = 0; j < num_views; ++j) {
-    if (costs[j] <= best[num_best - 1]) *mask |= 1u << j;
+    if (costs[j] <= best[num_best - 1]) *mask |= 1u << views[j];
   }
   return sum / static_cast<float>(num_best);
+}
+
+// The views that a stored hypothesis is judged by. Stored hypotheses are those
+// of a surface, so the second colour of the checkerboard asks the views that
+// its neighbours of the first colour found good; all views where there are
+// none.
+HPM_HD uint32_t ViewsToAsk(const VisitParams& params,
+                           const PixelState& state,
+                           StartFrom start,
+                           int col,
+                           int row) {
+  const uint32_t all = (1u << (params.num_views - 1)) * 2u - 1u;
+  if (start != StartFrom::kCurrent || (col + row) % 2 == 0) return all;
+  const int at = row * state.width + col;
+  uint32_t views = 0;
+  if (row > 0) views |= state.masks[at - state.width];
+  if (col > 0) views |= state.masks[at - 1];
+  if (col + 1 < state.width) views |= state.masks[at + 1];
+  if (row + 1 < state.height) views |= state.masks[at + state.width];
+  return views != 0 ? views : all;
 }
 
 template <class Cost>
@@ -71,12 +95,16 @@ HPM_HD void InitializePixel(const VisitParams& params,
     plane.distance = -rng->Uniform(params.depth_min, params.depth_max) *
                      Dot(plane.normal, ray);
   }
+  const uint32_t asked = ViewsToAsk(params, state, start, col, row);
   uint8_t views[kMaxViews] = {};
-  for (int j = 0; j < params.num_views; ++j) views[j] = static_cast<uint8_t>(j);
+  int num_views = 0;
+  for (int j = 0; j < params.num_views; ++j) {
+    if (asked >> j & 1) views[num_views++] = static_cast<uint8_t>(j);
+  }
   float costs[kMaxViews];
-  cost.Photometric(&plane, 1, views, params.num_views, costs);
+  cost.Photometric(&plane, 1, views, num_views, costs);
   state.planes[at] = plane;
-  state.costs[at] = BestViewsCost(costs, params.num_views, &state.masks[at]);
+  state.costs[at] = BestViewsCost(costs, views, num_views, &state.masks[at]);
 }
 
 }  // namespace hpm

@@ -38,13 +38,15 @@ class CpuBackend : public Backend {
   }
 
   void SetViews(const ViewSet& views, const MethodParams& params) override {
-    views_.reset();  // free the images of the problem before first
+    ForgetViews();
     views_.emplace(views, params);
     num_evaluations_ = 0;
     random_key_ = views.random_key;
     visit_ = MakeVisitParams(views, params);
     method_ = params;
   }
+
+  void ForgetViews() override { views_.reset(); }
 
   void Run(const Pass& pass,
            const SamplingPattern& pattern,

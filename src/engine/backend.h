@@ -36,6 +36,10 @@ class Backend {
   // Takes the images and cameras of a problem; replaces the problem before.
   virtual void SetViews(const ViewSet& views, const MethodParams& params) = 0;
 
+  // Gives back what the problem holds, as far as that is host memory; SetViews
+  // starts the next.
+  virtual void ForgetViews() {}
+
   // Whether Run takes priors of a coarser level (HypothesisMap::prior_level)
   // and upsamples them itself.
   virtual bool UpsamplesPriors() const { return false; }

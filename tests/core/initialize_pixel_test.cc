@@ -12,7 +12,17 @@ namespace hpm {
 namespace {
 
 float BestOf(const std::vector<float>& costs, uint32_t* mask) {
-  return BestViewsCost(costs.data(), static_cast<int>(costs.size()), mask);
+  const std::vector<uint8_t> views = {0, 1, 2, 3, 4, 5};
+  return BestViewsCost(
+      costs.data(), views.data(), static_cast<int>(costs.size()), mask);
+}
+
+TEST(BestViewsCost, NamesTheViewsThatWereAsked) {
+  const float costs[] = {0.2f, 2.0f, 0.4f};
+  const uint8_t views[] = {1, 4, 6};
+  uint32_t mask;
+  EXPECT_FLOAT_EQ(BestViewsCost(costs, views, 3, &mask), 0.3f);
+  EXPECT_EQ(mask, 0b1000010u);
 }
 
 TEST(BestViewsCost, IsTheMeanOfTheFourSmallest) {
@@ -95,6 +105,35 @@ TEST_F(InitializePixelTest, CurrentStartKeepsTheStoredPlane) {
   const Plane plane = Start(StartFrom::kCurrent);
   EXPECT_EQ(plane.distance, stored_.distance);
   EXPECT_EQ(plane.normal.z, stored_.normal.z);
+}
+
+class ViewsToAskTest : public testing::Test {
+ protected:
+  uint32_t Asked(StartFrom start, int col, int row) {
+    VisitParams params = {};
+    params.num_views = 6;
+    const PixelState state = {3, 3, nullptr, nullptr, trusted_.data(), nullptr};
+    return ViewsToAsk(params, state, start, col, row);
+  }
+  std::vector<uint32_t> trusted_ = std::vector<uint32_t>(9, 0);
+};
+
+TEST_F(ViewsToAskTest, TheSecondColourAsksWhatItsNeighboursTrusted) {
+  trusted_[0] = 0b000011;  // left
+  trusted_[2] = 0b000110;  // right
+  trusted_[4] = 0b100000;  // below
+  trusted_[1] = 0b001000;  // its own: of another hypothesis
+  trusted_[8] = 0b010000;  // not a neighbour
+  EXPECT_EQ(Asked(StartFrom::kCurrent, 1, 0), 0b100111u);
+}
+
+TEST_F(ViewsToAskTest, AllViewsWhereNothingIsKnown) {
+  EXPECT_EQ(Asked(StartFrom::kCurrent, 1, 0), 0b111111u);
+  trusted_ = std::vector<uint32_t>(9, 1);
+  EXPECT_EQ(Asked(StartFrom::kCurrent, 1, 0), 1u);
+  EXPECT_EQ(Asked(StartFrom::kCurrent, 1, 1), 0b111111u);  // the first colour
+  EXPECT_EQ(Asked(StartFrom::kRandom, 1, 0), 0b111111u);
+  EXPECT_EQ(Asked(StartFrom::kPrior, 1, 0), 0b111111u);
 }
 
 TEST_F(InitializePixelTest, CurrentStartWithoutAPlaneIsRandom) {
