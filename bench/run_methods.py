@@ -27,7 +27,10 @@ METHODS = (
 
 def run(command, log):
     with open(log, "a", encoding="utf-8") as out:
-        subprocess.run([str(c) for c in command], stdout=out, stderr=out, check=True)
+        code = subprocess.run([str(c) for c in command], stdout=out, stderr=out).returncode
+    if code != 0:
+        last_words = log.read_text(encoding="utf-8", errors="replace").splitlines()[-5:]
+        sys.exit("\n".join([f"{command[0]} ended with {code}:", *last_words]))
 
 
 def copy_workspace(scene, folder):

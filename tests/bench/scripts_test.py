@@ -46,6 +46,17 @@ class ScriptsTest(unittest.TestCase):
         self.assertEqual([cell.strip() for cell in row[1:4]], ["64x48", "3", "1"])
         self.assertGreater(int(row[4]), 10)
 
+    def test_run_methods_says_what_went_wrong(self):
+        build = pathlib.Path(HPM_MVS).parents[2]
+        ended = subprocess.run(
+            [sys.executable, BENCH / "run_methods.py", "--build", build, "--scenes", self.scene,
+             "--methods", "nonsense", "--out", self.out],
+            capture_output=True, text=True,
+        )
+        self.assertEqual(ended.returncode, 1)
+        self.assertIn("'nonsense' is not allowed", ended.stderr)
+        self.assertNotIn("Traceback", ended.stderr)
+
     def test_match_cost_speed(self):
         output_of(os.environ["HPM_MATCH_COST_SPEED"], "--rounds", 1, "--width", 64,
                   "--height", 48, "--srcs", 2, "--json", self.out)
