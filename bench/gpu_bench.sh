@@ -25,12 +25,13 @@ nvcc=$(command -v nvcc || echo "$cuda/bin/nvcc")
 cuda=$(dirname "$(dirname "$(readlink -f "$nvcc")")")
 include=(-I"$cuda/include")
 if [[ -d $carry/include ]]; then
-  include+=(-I"$carry/include" -I"$carry/include/eigen3")
-  libs=("$carry"/lib/lib{tbb.so.12,gmp.so.10,mpfr.so.6,lz4.so.1,hwy.so.1} -Wl,-rpath,"$PWD/$carry/lib")
+  include+=(-I"$carry/include" -I"$carry/include/eigen3" -I"$carry/include/opencv4")
+  # The old kind of path, which the libraries' own needs are looked up in, too.
+  libs=("${shared_libs[@]/#/$carry/lib/}" -Wl,--disable-new-dtags,-rpath,"$PWD/$carry/lib")
   gtest=("$carry"/lib/lib{gtest_main.a,gmock.a,gtest.a})
 else
-  include+=(-I/usr/include/eigen3)
-  libs=(-ltbb -lgmp -lmpfr -llz4 -lhwy)
+  include+=(-I/usr/include/eigen3 -I/usr/include/opencv4)
+  libs=(-ltbb -lgmp -lmpfr -llz4 -lhwy -lopencv_core -lopencv_imgproc)
   gtest=(-lgtest_main -lgmock -lgtest)
 fi
 capability=$(nvidia-smi --query-gpu=compute_cap --format=csv,noheader 2>/dev/null | head -1 | tr -d '. ')

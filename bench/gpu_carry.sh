@@ -9,9 +9,9 @@ source bench/gpu/sources.sh
 rm -rf "$carry"
 mkdir -p "$carry/include" "$carry/lib"
 cuda=${CUDA_HOME:-/usr/local/cuda}
-ours='^/usr/include/(x86_64-linux-gnu/)?(CGAL|boost|flann|fmt|tbb|oneapi|hwy|gtest|gmock|eigen3|lz4[a-z]*\.h|gmp[a-z]*\.h|mpfr\.h|mpf2mpfr\.h)'
+ours='^/usr/include/(x86_64-linux-gnu/)?(CGAL|boost|flann|fmt|tbb|oneapi|hwy|gtest|gmock|eigen3|opencv4|lz4[a-z]*\.h|gmp[a-z]*\.h|mpfr\.h|mpf2mpfr\.h)'
 for source in "${library_sources[@]}" "${test_sources[@]}" "${bench_sources[@]}"; do
-  g++ "${cxx_flags[@]}" -I/usr/include/eigen3 -I"$cuda/include" -M "$source" 2>/dev/null ||
+  g++ "${cxx_flags[@]}" -I/usr/include/eigen3 -I/usr/include/opencv4 -I"$cuda/include" -M "$source" 2>/dev/null ||
     { echo "error: $source cannot be read; run scripts/install_dependencies.sh" >&2; exit 1; }
 done | tr ' \\' '\n\n' | grep -E "$ours" | sort -u |
   while read -r header; do
@@ -23,7 +23,10 @@ done | tr ' \\' '\n\n' | grep -E "$ours" | sort -u |
 # Highway includes itself by target through macros that -M follows, but not all of ops/.
 cp -r /usr/include/hwy "$carry/include/"
 lib=/usr/lib/x86_64-linux-gnu
-for name in libtbb.so.12 libgmp.so.10 libmpfr.so.6 liblz4.so.1 libhwy.so.1 libgtest.a libgtest_main.a libgmock.a; do
+cp -L "$lib"/lib{gtest,gtest_main,gmock}.a "$carry/lib/"
+for name in "${shared_libs[@]}"; do
   cp -L "$lib/$name" "$carry/lib/"
-done
+  # What it needs in turn, but for what comes with every compiler.
+  ldd "$lib/$name" | awk '$3 ~ /^\// { print $3 }' | grep -vE '/(libc|libm|libgcc_s|libstdc\+\+|libdl|libpthread)\.so' || true
+done | sort -u | while read -r library; do cp -L "$library" "$carry/lib/"; done
 echo "carry: $(find "$carry" -type f | wc -l) files, $(du -sh "$carry" | cut -f1), in $carry"
