@@ -99,6 +99,16 @@ TEST_F(CpuBackendTest, ConsistencyIsLookedAtWhereTheFilterLooks) {
   }
 }
 
+TEST_F(CpuBackendTest, ForgottenViewsAreHeldNoLonger) {
+  const auto backend = MakeCpuBackend("auto", 1);
+  const auto& depth = views_.srcs[0].inverse_depth;
+  const auto num_holders = depth.use_count();
+  backend->SetViews(views_, MethodParams());
+  EXPECT_GT(depth.use_count(), num_holders);
+  backend->ForgetViews();
+  EXPECT_EQ(depth.use_count(), num_holders);
+}
+
 // The costs are taken as they are: only the iterations count.
 TEST_F(CpuBackendTest, AStoredStartComputesNoCosts) {
   const auto backend = MakeCpuBackend("auto", 2);
