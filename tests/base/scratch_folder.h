@@ -16,10 +16,10 @@ namespace hpm {
 class ScratchFolder {
  public:
   ScratchFolder() {
-    // mkdtemp() replaces the last six letters.
+    // mkdtemp() puts a name of its own in place of the six letters.
     std::string name =
-        (std::filesystem::temp_directory_path() / "hpm_mvs_test_XXXXXX")
-            .string();
+        (std::filesystem::temp_directory_path() / "hpm_mvs_test_").string() +
+        std::string(6, 'X');
     if (mkdtemp(name.data()) == nullptr)
       throw std::runtime_error("cannot create " + name);
     path_ = name;
