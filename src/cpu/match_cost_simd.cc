@@ -196,27 +196,40 @@ HWY_INLINE VF PairCosts(D df,
       inv_z[i] = hn::MulAdd(d, dcol[2], row_z);
     }
     for (int i = 0; i < kPatchAxis; i += 3) InvertThree(df, inv_z + i);
+    VF fu[kPatchAxis], fv[kPatchAxis];
+    VI index[kPatchAxis];
     for (int i = 0; i < kPatchAxis; ++i) {
       const VF d = hn::Set(df, static_cast<float>(match.shape.offset[i]));
-      VF u = hn::Mul(hn::MulAdd(d, dcol[0], row_x), inv_z[i]);
-      VF v = hn::Mul(hn::MulAdd(d, dcol[1], row_y), inv_z[i]);
-      u = hn::Min(hn::Max(u, zero), max_u);
-      v = hn::Min(hn::Max(v, zero), max_v);
-      const VI iu = Truncate(u);
-      const VI iv = Truncate(v);
-      const VF fu = hn::Sub(u, hn::ConvertTo(df, iu));
-      const VF fv = hn::Sub(v, hn::ConvertTo(df, iv));
-      const VI index =
-          hn::Add(hn::Add(hn::Mul(iv, stride), hn::Add(iu, iu)), offset);
-      const VI texel = hn::GatherOffset(di, texels, index);
+      fu[i] = hn::Mul(hn::MulAdd(d, dcol[0], row_x), inv_z[i]);
+      fv[i] = hn::Mul(hn::MulAdd(d, dcol[1], row_y), inv_z[i]);
+    }
+    for (int i = 0; i < kPatchAxis; ++i) {
+      fu[i] = hn::Min(hn::Max(fu[i], zero), max_u);
+      fv[i] = hn::Min(hn::Max(fv[i], zero), max_v);
+    }
+    for (int i = 0; i < kPatchAxis; ++i) {
+      const VI iu = Truncate(fu[i]);
+      const VI iv = Truncate(fv[i]);
+      index[i] = hn::Add(hn::Add(hn::Mul(iv, stride), hn::Add(iu, iu)), offset);
+      fu[i] = hn::Sub(fu[i], hn::ConvertTo(df, iu));
+      fv[i] = hn::Sub(fv[i], hn::ConvertTo(df, iv));
+    }
+    for (int i = 0; i < kPatchAxis; ++i)
+      index[i] = hn::GatherOffset(di, texels, index[i]);
+    for (int i = 0; i < kPatchAxis; ++i) {
+      const VI texel = index[i];
       const VF p00 = hn::ConvertTo(df, hn::And(texel, byte));
       const VF p10 = hn::ConvertTo(df, hn::TableLookupBytesOr0(texel, second));
       const VF p01 = hn::ConvertTo(df, hn::TableLookupBytesOr0(texel, third));
       const VF p11 = hn::ConvertTo(
           df, hn::BitCast(di, hn::ShiftRight<24>(hn::BitCast(du, texel))));
-      const VF top = hn::MulAdd(fu, hn::Sub(p01, p00), p00);
-      const VF bottom = hn::MulAdd(fu, hn::Sub(p11, p10), p10);
-      const VF s = hn::Sub(hn::MulAdd(fv, hn::Sub(bottom, top), top), center);
+      const VF top = hn::MulAdd(fu[i], hn::Sub(p01, p00), p00);
+      const VF bottom = hn::MulAdd(fu[i], hn::Sub(p11, p10), p10);
+      fu[i] =
+          hn::Sub(hn::MulAdd(fv[i], hn::Sub(bottom, top), top), center);
+    }
+    for (int i = 0; i < kPatchAxis; ++i) {
+      const VF s = fu[i];
       const int k = j * kPatchAxis + i;
       const VF ws = hn::Mul(hn::Set(df, patch.weight[k]), s);
       sum_s = hn::Add(sum_s, ws);
