@@ -185,38 +185,37 @@ HWY_INLINE VF PairCosts(D df,
   const VF center = hn::Set(df, patch.center);
   const int32_t* texels = reinterpret_cast<const int32_t*>(match.origin);
   VF sum_s = zero, sum_ss = zero, sum_rs = zero;
-  for (int j = 0; j < kPatchAxis; ++j) {
-    const VF dj = hn::Set(df, static_cast<float>(match.shape.offset[j]));
+  constexpr int R = hn::MaxLanes(D()) <= 4 ? 2 : 1, N = R*kPatchAxis;
+  for (int j = 0; j < kPatchAxis; j += R) {
+    VF z[N], fu[N], fv[N];
+    VI index[N];
+    for (int r = 0; r < R; ++r) {
+    const VF dj = hn::Set(df, static_cast<float>(match.shape.offset[j+r]));
     const VF row_x = hn::MulAdd(dj, drow[0], origin[0]);
     const VF row_y = hn::MulAdd(dj, drow[1], origin[1]);
     const VF row_z = hn::MulAdd(dj, drow[2], origin[2]);
-    VF inv_z[kPatchAxis];
     for (int i = 0; i < kPatchAxis; ++i) {
       const VF d = hn::Set(df, static_cast<float>(match.shape.offset[i]));
-      inv_z[i] = hn::MulAdd(d, dcol[2], row_z);
+      z[r*kPatchAxis+i] = hn::MulAdd(d, dcol[2], row_z);
+      fu[r*kPatchAxis+i] = hn::MulAdd(d, dcol[0], row_x);
+      fv[r*kPatchAxis+i] = hn::MulAdd(d, dcol[1], row_y);
     }
-    for (int i = 0; i < kPatchAxis; i += 3) InvertThree(df, inv_z + i);
-    VF fu[kPatchAxis], fv[kPatchAxis];
-    VI index[kPatchAxis];
-    for (int i = 0; i < kPatchAxis; ++i) {
-      const VF d = hn::Set(df, static_cast<float>(match.shape.offset[i]));
-      fu[i] = hn::Mul(hn::MulAdd(d, dcol[0], row_x), inv_z[i]);
-      fv[i] = hn::Mul(hn::MulAdd(d, dcol[1], row_y), inv_z[i]);
     }
-    for (int i = 0; i < kPatchAxis; ++i) {
-      fu[i] = hn::Min(hn::Max(fu[i], zero), max_u);
-      fv[i] = hn::Min(hn::Max(fv[i], zero), max_v);
+    for (int i = 0; i < N; i += 3) InvertThree(df, z + i);
+    for (int i = 0; i < N; ++i) {
+      fu[i] = hn::Min(hn::Max(hn::Mul(fu[i], z[i]), zero), max_u);
+      fv[i] = hn::Min(hn::Max(hn::Mul(fv[i], z[i]), zero), max_v);
     }
-    for (int i = 0; i < kPatchAxis; ++i) {
+    for (int i = 0; i < N; ++i) {
       const VI iu = Truncate(fu[i]);
       const VI iv = Truncate(fv[i]);
       index[i] = hn::Add(hn::Add(hn::Mul(iv, stride), hn::Add(iu, iu)), offset);
       fu[i] = hn::Sub(fu[i], hn::ConvertTo(df, iu));
       fv[i] = hn::Sub(fv[i], hn::ConvertTo(df, iv));
     }
-    for (int i = 0; i < kPatchAxis; ++i)
+    for (int i = 0; i < N; ++i)
       index[i] = hn::GatherOffset(di, texels, index[i]);
-    for (int i = 0; i < kPatchAxis; ++i) {
+    for (int i = 0; i < N; ++i) {
       const VI texel = index[i];
       const VF p00 = hn::ConvertTo(df, hn::And(texel, byte));
       const VF p10 = hn::ConvertTo(df, hn::TableLookupBytesOr0(texel, second));
@@ -228,7 +227,7 @@ HWY_INLINE VF PairCosts(D df,
       fu[i] =
           hn::Sub(hn::MulAdd(fv[i], hn::Sub(bottom, top), top), center);
     }
-    for (int i = 0; i < kPatchAxis; ++i) {
+    for (int i = 0; i < N; ++i) {
       const VF s = fu[i];
       const int k = j * kPatchAxis + i;
       const VF ws = hn::Mul(hn::Set(df, patch.weight[k]), s);
