@@ -73,16 +73,18 @@ HPM_HD float GeometricErrorAt(const DeviceProblem& problem,
   if (inverse_depths.steps == nullptr) return 0;
   const int width = problem.to_src[view].width;
   const int height = problem.to_src[view].height;
-  return ReprojectionError(problem.to_src[view],
-                           problem.to_ref[view],
-                           slope,
+  return ReprojectionError(Reproject(problem.to_src[view],
+                                     problem.to_ref[view],
+                                     slope,
+                                     static_cast<float>(col),
+                                     static_cast<float>(row),
+                                     [&](float u, float v) {
+                                       return InterpolateInverseDepth(
+                                           inverse_depths, width, height, u, v);
+                                     }),
                            static_cast<float>(col),
                            static_cast<float>(row),
-                           problem.params.geometric_term.max_error,
-                           [&](float u, float v) {
-                             return InterpolateInverseDepth(
-                                 inverse_depths, width, height, u, v);
-                           });
+                           problem.params.geometric_term.max_error);
 }
 
 }  // namespace hpm

@@ -16,39 +16,53 @@ struct GeometricTerm {
   float max_error;  // pixels; also the error where the source has no depth
 };
 
-// The pixel of the reference image, after going to the source view along the
-// hypothesis and back along the depth that the source view found.
-// `inverse_depth(u, v)` returns 1/z of the source view at a continuous position
-// (pixel centres at integers), 0 where there is none. Working with 1/z makes
-// the way back M' (u, v, 1) + v' / z, and bilinear interpolation exact on
-// planes.
+// Where the surface that a source view found lies in the reference image.
+struct Reprojection {
+  float col, row;
+  float inverse_depth;  // 1/z in the reference camera; 0: there is none
+};
+
+// Goes to the source view along the hypothesis and back along the depth that
+// the source view found. `inverse_depth(u, v)` returns 1/z of the source view
+// at a continuous position (pixel centres at integers), 0 where there is none.
+// Working with 1/z makes the way back M' (u, v, 1) + v' / z, and bilinear
+// interpolation exact on planes.
 template <class InverseDepth>
-HPM_HD float ReprojectionError(const ViewWarp& to_src,
-                               const ViewWarp& to_ref,
-                               const PlaneSlope& slope,
-                               float col,
-                               float row,
-                               float max_error,
-                               const InverseDepth& inverse_depth) {
+HPM_HD Reprojection Reproject(const ViewWarp& to_src,
+                              const ViewWarp& to_ref,
+                              const PlaneSlope& slope,
+                              float col,
+                              float row,
+                              const InverseDepth& inverse_depth) {
+  const Reprojection none = {0, 0, 0};
   const Vec3f q =
       to_src.M * Vec3f{col, row, 1.0f} -
       (slope.col * col + slope.row * row + slope.constant) * to_src.v;
-  if (!(q.z > 0)) return max_error;
+  if (!(q.z > 0)) return none;
   const float inv_q = 1 / q.z;
   const float u = q.x * inv_q;
   const float v = q.y * inv_q;
   if (!(u >= -0.5f && v >= -0.5f &&
         u <= static_cast<float>(to_src.width) - 0.5f &&
         v <= static_cast<float>(to_src.height) - 0.5f)) {
-    return max_error;
+    return none;
   }
   const float inv_z = inverse_depth(u, v);
-  if (!(inv_z > 0)) return max_error;
+  if (!(inv_z > 0)) return none;
   const Vec3f p = to_ref.M * Vec3f{u, v, 1.0f} + inv_z * to_ref.v;
-  if (!(p.z > 0)) return max_error;
+  if (!(p.z > 0)) return none;
   const float inv_p = 1 / p.z;
-  const float dcol = p.x * inv_p - col;
-  const float drow = p.y * inv_p - row;
+  return {p.x * inv_p, p.y * inv_p, inv_z * inv_p};
+}
+
+// Pixels between (col, row) and where the source view brings it back to.
+HPM_HD float ReprojectionError(const Reprojection& reprojection,
+                               float col,
+                               float row,
+                               float max_error) {
+  if (!(reprojection.inverse_depth > 0)) return max_error;
+  const float dcol = reprojection.col - col;
+  const float drow = reprojection.row - row;
   const float error = sqrtf(dcol * dcol + drow * drow);
   return error < max_error ? error : max_error;
 }

@@ -104,16 +104,19 @@ float CpuViews::GeometricError(const PlaneSlope& slope,
   const InverseDepths inverse_depths = inverse_depths_[view]->View();
   const int width = to_src_[view].width;
   const int height = to_src_[view].height;
-  return ReprojectionError(to_src_[view],
-                           to_ref_[view],
-                           slope,
-                           col,
-                           row,
-                           max_error,
-                           [&](float u, float v) {
-                             return InterpolateInverseDepth(
-                                 inverse_depths, width, height, u, v);
-                           });
+  return ReprojectionError(
+      Reproject(to_src_[view],
+                to_ref_[view],
+                slope,
+                col,
+                row,
+                [&](float u, float v) {
+                  return InterpolateInverseDepth(
+                      inverse_depths, width, height, u, v);
+                }),
+      col,
+      row,
+      max_error);
 }
 
 uint64_t CpuViews::MemoryNeeded(int width, int height, int num_srcs) {

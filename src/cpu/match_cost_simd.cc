@@ -185,21 +185,21 @@ HWY_INLINE VF PairCosts(D df,
   const VF center = hn::Set(df, patch.center);
   const int32_t* texels = reinterpret_cast<const int32_t*>(match.origin);
   VF sum_s = zero, sum_ss = zero, sum_rs = zero;
-  constexpr int R = hn::MaxLanes(D()) <= 4 ? 2 : 1, N = R*kPatchAxis;
+  constexpr int R = hn::MaxLanes(D()) <= 4 ? 2 : 1, N = R * kPatchAxis;
   for (int j = 0; j < kPatchAxis; j += R) {
     VF z[N], fu[N], fv[N];
     VI index[N];
     for (int r = 0; r < R; ++r) {
-    const VF dj = hn::Set(df, static_cast<float>(match.shape.offset[j+r]));
-    const VF row_x = hn::MulAdd(dj, drow[0], origin[0]);
-    const VF row_y = hn::MulAdd(dj, drow[1], origin[1]);
-    const VF row_z = hn::MulAdd(dj, drow[2], origin[2]);
-    for (int i = 0; i < kPatchAxis; ++i) {
-      const VF d = hn::Set(df, static_cast<float>(match.shape.offset[i]));
-      z[r*kPatchAxis+i] = hn::MulAdd(d, dcol[2], row_z);
-      fu[r*kPatchAxis+i] = hn::MulAdd(d, dcol[0], row_x);
-      fv[r*kPatchAxis+i] = hn::MulAdd(d, dcol[1], row_y);
-    }
+      const VF dj = hn::Set(df, static_cast<float>(match.shape.offset[j + r]));
+      const VF row_x = hn::MulAdd(dj, drow[0], origin[0]);
+      const VF row_y = hn::MulAdd(dj, drow[1], origin[1]);
+      const VF row_z = hn::MulAdd(dj, drow[2], origin[2]);
+      for (int i = 0; i < kPatchAxis; ++i) {
+        const VF d = hn::Set(df, static_cast<float>(match.shape.offset[i]));
+        z[r * kPatchAxis + i] = hn::MulAdd(d, dcol[2], row_z);
+        fu[r * kPatchAxis + i] = hn::MulAdd(d, dcol[0], row_x);
+        fv[r * kPatchAxis + i] = hn::MulAdd(d, dcol[1], row_y);
+      }
     }
     for (int i = 0; i < N; i += 3) InvertThree(df, z + i);
     for (int i = 0; i < N; ++i) {
@@ -224,8 +224,7 @@ HWY_INLINE VF PairCosts(D df,
           df, hn::BitCast(di, hn::ShiftRight<24>(hn::BitCast(du, texel))));
       const VF top = hn::MulAdd(fu[i], hn::Sub(p01, p00), p00);
       const VF bottom = hn::MulAdd(fu[i], hn::Sub(p11, p10), p10);
-      fu[i] =
-          hn::Sub(hn::MulAdd(fv[i], hn::Sub(bottom, top), top), center);
+      fu[i] = hn::Sub(hn::MulAdd(fv[i], hn::Sub(bottom, top), top), center);
     }
     for (int i = 0; i < N; ++i) {
       const VF s = fu[i];

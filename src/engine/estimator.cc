@@ -82,8 +82,7 @@ void RunStage(Backend* backend,
     }
     if (pass.regions != RegionPriors::kNone) {
       PhaseTimer timer(times, "build prior");
-      map->priors = MineRegions(
-          backend, views, params, *map, pass.id, {control.cancel, nullptr});
+      map->priors = MineRegions(views, params, *map, pass.id);
     }
     {
       PhaseTimer timer(times, PhaseName(pass.kind));

@@ -16,27 +16,86 @@ int LatticeStep(const HypothesisMap& map) {
                   static_cast<int>(std::sqrt(map.planes.size() / kNumPoints)));
 }
 
+// The sources that have a depth map.
+class DepthViews {
+ public:
+  explicit DepthViews(const ViewSet& views) : ref_(views.ref.camera) {
+    for (const View& src : views.srcs) {
+      if (src.inverse_depth == nullptr) continue;
+      views_.push_back({MakeViewWarp(ref_, src.camera),
+                        MakeViewWarp(src.camera, ref_),
+                        CamFromWorld(ref_, Center(src.camera)),
+                        src.inverse_depth->View()});
+    }
+  }
+
+  int size() const { return static_cast<int>(views_.size()); }
+
+  // The number of views that bring the pixel of this plane back to within
+  // max_error pixels; *inverse_depth becomes the mean of what they and the
+  // plane say, so that the views come to share one surface.
+  int Agreeing(const Plane& plane,
+               float col,
+               float row,
+               float max_error,
+               float* inverse_depth) const {
+    const PlaneSlope slope = SlopeOf(ref_, plane);
+    const auto of_plane = [&](float c, float r) {
+      return -(slope.col * c + slope.row * r + slope.constant);
+    };
+    const Vec3f point = (1 / of_plane(col, row)) * RayAt(ref_, col, row);
+    int count = 0;
+    float sum = 0;
+    for (const DepthView& view : views_) {
+      if (Dot(view.center - point, plane.normal) <= 0) continue;  // its back
+      const Reprojection back = Reproject(
+          view.to_src, view.to_ref, slope, col, row, [&](float u, float v) {
+            return InterpolateInverseDepth(view.inverse_depths,
+                                           view.to_src.width,
+                                           view.to_src.height,
+                                           u,
+                                           v);
+          });
+      // A null depth has the largest error, which does not agree.
+      if (!(ReprojectionError(back, col, row, 2 * max_error) <= max_error))
+        continue;
+      ++count;
+      sum += back.inverse_depth - of_plane(back.col, back.row);
+    }
+    *inverse_depth = of_plane(col, row) + sum / static_cast<float>(count + 1);
+    return count;
+  }
+
+ private:
+  struct DepthView {
+    ViewWarp to_src, to_ref;
+    Vec3f center;  // of the camera, in the reference camera frame
+    InverseDepths inverse_depths;
+  };
+
+  Camera ref_;
+  std::vector<DepthView> views_;
+};
+
 // Pixels of a lattice that at least `needed` views agree on.
-std::vector<ReliablePoint> ReliablePoints(Backend* backend,
-                                          const Camera& camera,
+std::vector<ReliablePoint> ReliablePoints(const DepthViews& views,
                                           float max_error,
                                           int needed,
-                                          const HypothesisMap& map,
-                                          const RunControl& control) {
-  const FilterParams filter = {-1, 0, max_error, 0, LatticeStep(map)};
-  const std::vector<uint32_t> consistent =
-      backend->ConsistentViews(map, filter, true, control);
+                                          const HypothesisMap& map) {
+  const int step = LatticeStep(map);
   std::vector<ReliablePoint> points;
-  for (int row = 0; row < map.height; row += filter.step) {
-    for (int col = 0; col < map.width; col += filter.step) {
-      const size_t at = static_cast<size_t>(row) * map.width + col;
-      if (__builtin_popcount(consistent[at]) < needed) continue;
-      points.push_back({col,
-                        row,
-                        1 / DepthAt(camera,
-                                    map.planes[at],
-                                    static_cast<float>(col),
-                                    static_cast<float>(row))});
+  for (int row = 0; row < map.height; row += step) {
+    for (int col = 0; col < map.width; col += step) {
+      const Plane& plane =
+          map.planes[static_cast<size_t>(row) * map.width + col];
+      if (!(plane.distance > 0)) continue;
+      float inverse_depth;
+      const int count = views.Agreeing(plane,
+                                       static_cast<float>(col),
+                                       static_cast<float>(row),
+                                       max_error,
+                                       &inverse_depth);
+      if (count >= needed) points.push_back({col, row, inverse_depth});
     }
   }
   return points;
@@ -44,33 +103,23 @@ std::vector<ReliablePoint> ReliablePoints(Backend* backend,
 
 }  // namespace
 
-std::vector<Plane> MineRegions(Backend* backend,
-                               const ViewSet& views,
+std::vector<Plane> MineRegions(const ViewSet& views,
                                const MethodParams& params,
                                const HypothesisMap& map,
-                               uint64_t key,
-                               const RunControl& control) {
-  const auto num_depths =
-      std::count_if(views.srcs.begin(), views.srcs.end(), [](const View& src) {
-        return src.inverse_depth != nullptr;
-      });
-  if (num_depths == 0 || !(params.region_max_gradient > 0)) return {};
+                               uint64_t key) {
+  const DepthViews depth_views(views);
+  if (depth_views.size() == 0 || !(params.region_max_gradient > 0)) return {};
   const WeakRegions regions = FindWeakRegions(
       *views.ref.image, params.region_max_gradient, params.region_min_share);
   if (regions.num_regions == 0) return {};
-  const int needed =
-      std::min(params.region_min_consistent, static_cast<int>(num_depths));
-  return MakeRegionPlanes(regions,
-                          views.ref.camera,
-                          ReliablePoints(backend,
-                                         views.ref.camera,
-                                         params.region_max_error,
-                                         needed,
-                                         map,
-                                         control),
-                          params.region_max_residual / Parallax(views),
-                          {views.depth_min, views.depth_max},
-                          CombineBits(views.random_key, key));
+  const int needed = std::min(params.region_min_consistent, depth_views.size());
+  return MakeRegionPlanes(
+      regions,
+      views.ref.camera,
+      ReliablePoints(depth_views, params.region_max_error, needed, map),
+      params.region_max_residual / Parallax(views),
+      {views.depth_min, views.depth_max},
+      CombineBits(views.random_key, key));
 }
 
 }  // namespace hpm

@@ -70,16 +70,19 @@ struct DeviceCost {
     const InverseDepths inverse_depths = views.inverse_depths[view];
     const int width = views.to_src[view].width;
     const int height = views.to_src[view].height;
-    return ReprojectionError(views.to_src[view],
-                             views.to_ref[view],
-                             slope,
-                             static_cast<float>(col),
-                             static_cast<float>(row),
-                             5.0f,
-                             [&](float u, float v) {
-                               return InterpolateInverseDepth(
-                                   inverse_depths, width, height, u, v);
-                             });
+    return ReprojectionError(
+        Reproject(views.to_src[view],
+                  views.to_ref[view],
+                  slope,
+                  static_cast<float>(col),
+                  static_cast<float>(row),
+                  [&](float u, float v) {
+                    return InterpolateInverseDepth(
+                        inverse_depths, width, height, u, v);
+                  }),
+        static_cast<float>(col),
+        static_cast<float>(row),
+        5.0f);
   }
 };
 

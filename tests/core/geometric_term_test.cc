@@ -22,13 +22,15 @@ float ErrorOf(const Camera& ref,
               float col,
               float row,
               const InverseDepthFunction& inverse_depth) {
-  return ReprojectionError(MakeViewWarp(ref, src),
-                           MakeViewWarp(src, ref),
-                           SlopeOf(ref, plane),
+  return ReprojectionError(Reproject(MakeViewWarp(ref, src),
+                                     MakeViewWarp(src, ref),
+                                     SlopeOf(ref, plane),
+                                     col,
+                                     row,
+                                     inverse_depth),
                            col,
                            row,
-                           kMaxError,
-                           inverse_depth);
+                           kMaxError);
 }
 
 // The plane in the frame of another camera.
