@@ -43,7 +43,7 @@ void RecordMatchCosts(const MatchViews& match,
                       const RefPatch& patch,
                       const MatchRequest& request,
                       float* costs) {
-  static const MatchCostFunction match_cost = FindCpuTarget("auto").match_cost;
+  static const MatchCostFunction match_cost = FindCpuTarget("auto").match_costs;
   match_cost(match, patch, request, costs);
   if (request.row < recording.first_row ||
       request.row >= recording.first_row + kBandRows) {
@@ -70,7 +70,8 @@ void Record(const ViewSet& views) {
   const Schedule schedule = MakeSchedule(options);
   recording.first_row = views.ref.camera.height / 2;
   // One thread: the recording keeps the order of the visits.
-  const auto backend = MakeCpuBackend({"recorder", &RecordMatchCosts}, 1);
+  const auto backend =
+      MakeCpuBackend({"recorder", &RecordMatchCosts, nullptr}, 1);
   HypothesisMap map(views.ref.camera.width, views.ref.camera.height);
   const CancelToken cancel;
   PhaseTimes times;
@@ -96,15 +97,15 @@ double Replay(const CpuTarget& target,
     const int patch =
         (recorded.row - recording.first_row) * views.match().ref.width +
         recorded.col;
-    target.match_cost(views.match(),
-                      patches[patch],
-                      {recorded.col,
-                       recorded.row,
-                       &recording.planes[recorded.first_plane],
-                       recorded.num_planes,
-                       recorded.views,
-                       recorded.num_views},
-                      costs);
+    target.match_costs(views.match(),
+                       patches[patch],
+                       {recorded.col,
+                        recorded.row,
+                        &recording.planes[recorded.first_plane],
+                        recorded.num_planes,
+                        recorded.views,
+                        recorded.num_views},
+                       costs);
     sum += costs[0];
   }
   *checksum = sum;

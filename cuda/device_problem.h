@@ -71,20 +71,33 @@ HPM_HD float GeometricErrorAt(const DeviceProblem& problem,
                               int row) {
   const InverseDepths inverse_depths = problem.inverse_depths[view];
   if (inverse_depths.steps == nullptr) return 0;
-  const int width = problem.to_src[view].width;
-  const int height = problem.to_src[view].height;
   return ReprojectionError(Reproject(problem.to_src[view],
                                      problem.to_ref[view],
                                      slope,
                                      static_cast<float>(col),
                                      static_cast<float>(row),
-                                     [&](float u, float v) {
-                                       return InterpolateInverseDepth(
-                                           inverse_depths, width, height, u, v);
-                                     }),
+                                     inverse_depths),
                            static_cast<float>(col),
                            static_cast<float>(row),
                            problem.params.geometric_term.max_error);
+}
+
+// See Cost in src/core/visit.h.
+HPM_HD void GeometricErrorsAt(const DeviceProblem& problem,
+                              const Plane* planes,
+                              int num_planes,
+                              const uint8_t* views,
+                              int num_views,
+                              int col,
+                              int row,
+                              float* errors) {
+  for (int i = 0; i < num_planes; ++i) {
+    const PlaneSlope slope = SlopeOf(problem.params.ref, planes[i]);
+    for (int k = 0; k < num_views; ++k) {
+      errors[i * num_views + k] =
+          GeometricErrorAt(problem, slope, views[k], col, row);
+    }
+  }
 }
 
 }  // namespace hpm

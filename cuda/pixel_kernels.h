@@ -39,7 +39,6 @@ HPM_HD void VisitPixel(const DeviceProblem& problem,
   if constexpr (kKind == SweepKind::kConsistency) {
     const size_t at = static_cast<size_t>(row) * state.width + col;
     consistent[at] = 0;
-    if (!sweep.filter.LooksAt(col, row)) return;
     consistent[at] = ConsistentViews(problem.params,
                                      sweep.filter,
                                      problem.src_centers,

@@ -189,8 +189,13 @@ class PooledCost {
   HPM_HD_MEMBER bool HasDepth(int view) const {
     return HasDepthMap(problem_, view);
   }
-  HPM_HD_MEMBER float GeometricError(const PlaneSlope& slope, int view) const {
-    return GeometricErrorAt(problem_, slope, view, col_, row_);
+  HPM_HD_MEMBER void GeometricErrors(const Plane* planes,
+                                     int num_planes,
+                                     const uint8_t* views,
+                                     int num_views,
+                                     float* errors) const {
+    GeometricErrorsAt(
+        problem_, planes, num_planes, views, num_views, col_, row_, errors);
   }
 
   HPM_HD_MEMBER int num_evaluations() const { return num_evaluations_; }

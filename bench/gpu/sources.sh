@@ -19,7 +19,10 @@ library_sources=(
   src/prior/upsample_prior.cc
   src/prior/weak_regions.cc
   src/cpu/cpu_backend.cc
+  src/cpu/cpu_target.cc
   src/cpu/cpu_views.cc
+  src/cpu/geometric_error_scalar.cc
+  src/cpu/geometric_error_simd.cc
   src/cpu/match_cost_scalar.cc
   src/cpu/match_cost_simd.cc
   src/cpu/texel_image.cc

@@ -12,11 +12,6 @@ struct FilterParams {
   float min_triangulation_angle;  // radians
   float max_reprojection_error;   // pixels
   int min_num_consistent;
-  int step = 1;  // only every step-th column and row is looked at
-
-  HPM_HD_MEMBER bool LooksAt(int col, int row) const {
-    return col % step == 0 && row % step == 0;
-  }
 };
 
 // Bit j: source view j is consistent. src_centers: camera centres in the
@@ -34,7 +29,6 @@ HPM_HD uint32_t ConsistentViews(const VisitParams& params,
   const Vec3f point = (-plane.distance / Dot(plane.normal, ray)) * ray;
   const Vec3f to_ref = -Normalized(point);
   const float max_cos = cosf(filter.min_triangulation_angle);
-  const PlaneSlope slope = SlopeOf(params.ref, plane);
   uint8_t views[kMaxViews];
   int num_views = 0;
   for (int j = 0; j < params.num_views; ++j) {
@@ -43,10 +37,17 @@ HPM_HD uint32_t ConsistentViews(const VisitParams& params,
     if (!(distance > 0) || Dot(to_src, plane.normal) <= 0) continue;
     if (Dot(to_src, to_ref) > max_cos * distance) continue;
     if (params.geometric && !cost.HasDepth(j)) continue;
-    if (params.geometric &&
-        cost.GeometricError(slope, j) > filter.max_reprojection_error)
-      continue;
     views[num_views++] = static_cast<uint8_t>(j);
+  }
+  if (params.geometric && num_views > 0) {
+    float errors[kMaxViews];
+    cost.GeometricErrors(&plane, 1, views, num_views, errors);
+    int num_near = 0;
+    for (int k = 0; k < num_views; ++k) {
+      if (!(errors[k] > filter.max_reprojection_error))
+        views[num_near++] = views[k];
+    }
+    num_views = num_near;
   }
   uint32_t mask = 0;
   if (filter.min_ncc <= -1) {  // every correlation will do

@@ -89,10 +89,11 @@ HPM_HD float InverseDepthSteps(const uint8_t* steps, size_t at) {
 #endif
 }
 
+constexpr float kSameSurface = 0.02f;  // relative to the first tap
+
 // Bilinear 1/z where the four taps belong to one surface, else the nearest tap.
 HPM_HD float InterpolateInverseDepth(
     const InverseDepths& map, int width, int height, float u, float v) {
-  constexpr float kSameSurface = 0.02f;  // relative to the first tap
   const float cu = Clamp(u, 0.0f, static_cast<float>(width - 1));
   const float cv = Clamp(v, 0.0f, static_cast<float>(height - 1));
   const int col = static_cast<int>(cu);
@@ -116,6 +117,17 @@ HPM_HD float InterpolateInverseDepth(
   const float top = a + wu * (b - a);
   const float bottom = c + wu * (d - c);
   return map.step * (top + wv * (bottom - top));
+}
+
+HPM_HD Reprojection Reproject(const ViewWarp& to_src,
+                              const ViewWarp& to_ref,
+                              const PlaneSlope& slope,
+                              float col,
+                              float row,
+                              const InverseDepths& map) {
+  return Reproject(to_src, to_ref, slope, col, row, [&](float u, float v) {
+    return InterpolateInverseDepth(map, to_src.width, to_src.height, u, v);
+  });
 }
 
 }  // namespace hpm

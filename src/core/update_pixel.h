@@ -48,26 +48,38 @@ struct Best {
   }
 };
 
-// Takes the plane if it is better; its photometric cost is known.
+// Takes the best of the planes if it is better; their photometric costs are
+// known. Reorders planes and costs.
 template <class Cost>
-HPM_HD bool TakeIfBetter(const VisitParams& params,
-                         const Cost& cost,
-                         const ViewWeights& weights,
-                         const Bonus& bonus,
-                         const Vec3f& ray,
-                         const Plane& plane,
-                         float photometric,
-                         Best* best) {
-  const float z = -plane.distance / Dot(plane.normal, ray);
-  if (!(z >= params.depth_min && z <= params.depth_max)) return false;
-  const float plane_bonus = bonus(z, plane.normal);
-  const float limit = best->Limit(plane_bonus);
-  if (!(photometric < limit)) return false;
-  const float total =
-      WithGeometricTerm(params, cost, weights, plane, photometric);
-  if (!(total < limit)) return false;
-  *best = {plane, total, plane_bonus};
-  return true;
+HPM_HD bool TakeBetter(const VisitParams& params,
+                       const Cost& cost,
+                       const ViewWeights& weights,
+                       const Bonus& bonus,
+                       const Vec3f& ray,
+                       Plane* planes,
+                       int num_planes,
+                       float* costs,
+                       Best* best) {
+  // The geometric term only adds: who is not better without it is out.
+  float bonuses[kNumRegions];
+  int num_left = 0;
+  for (int i = 0; i < num_planes; ++i) {
+    const float z = -planes[i].distance / Dot(planes[i].normal, ray);
+    if (!(z >= params.depth_min && z <= params.depth_max)) continue;
+    const float plane_bonus = bonus(z, planes[i].normal);
+    if (!(costs[i] < best->Limit(plane_bonus))) continue;
+    planes[num_left] = planes[i];
+    costs[num_left] = costs[i];
+    bonuses[num_left++] = plane_bonus;
+  }
+  AddGeometricTerms(params, cost, weights, planes, num_left, costs);
+  bool taken = false;
+  for (int i = 0; i < num_left; ++i) {
+    if (!(costs[i] < best->Limit(bonuses[i]))) continue;
+    *best = {planes[i], costs[i], bonuses[i]};
+    taken = true;
+  }
+  return taken;
 }
 
 // New hypotheses for the pixel at (x, y) whose plane is `best`; returns their
@@ -168,35 +180,27 @@ HPM_HD void UpdatePixel(const VisitParams& params,
   } else {
     PhotometricCosts(cost, weights, &best.plane, 1, &best.cost);
   }
-  best.cost = WithGeometricTerm(params, cost, weights, best.plane, best.cost);
+  AddGeometricTerms(params, cost, weights, &best.plane, 1, &best.cost);
   best.bonus = bonus(-best.plane.distance / Dot(best.plane.normal, ray),
                      best.plane.normal);
-  bool propagated = false;
 
   // Candidates: their photometric costs are known already.
+  Plane planes[kNumRegions];
+  float costs[kNumRegions];
+  int num_planes = 0;
   for (int i = 0; i < kNumRegions; ++i) {
     if (!((candidates.exists & ~candidates.current) >> i & 1)) continue;
-    const float photometric = WeightedMean(
+    planes[num_planes] = candidates.plane[i];
+    costs[num_planes++] = WeightedMean(
         weights, &candidates.matrix[i * candidates.num_views], true);
-    propagated |= TakeIfBetter(params,
-                               cost,
-                               weights,
-                               bonus,
-                               ray,
-                               candidates.plane[i],
-                               photometric,
-                               &best);
   }
+  const bool propagated = TakeBetter(
+      params, cost, weights, bonus, ray, planes, num_planes, costs, &best);
 
-  Plane refined[kNumRefined];
-  float refined_cost[kNumRefined];
-  const int num_refined =
-      RefinedPlanes(params, best.plane, prior, x, y, rng, refined);
-  PhotometricCosts(cost, weights, refined, num_refined, refined_cost);
-  for (int i = 0; i < num_refined; ++i) {
-    TakeIfBetter(
-        params, cost, weights, bonus, ray, refined[i], refined_cost[i], &best);
-  }
+  num_planes = RefinedPlanes(params, best.plane, prior, x, y, rng, planes);
+  PhotometricCosts(cost, weights, planes, num_planes, costs);
+  TakeBetter(
+      params, cost, weights, bonus, ray, planes, num_planes, costs, &best);
 
   state.planes[at] = best.plane;
   state.costs[at] = best.cost;

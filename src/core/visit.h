@@ -7,8 +7,11 @@
 //     a batch, so that the backend can fill its lanes;
 //   bool HasDepth(int view) const;
 //     whether the view has a depth map (geometric passes only);
-//   float GeometricError(const PlaneSlope& slope, int view) const;
-//     reprojection error in pixels, capped (geometric passes only).
+//   void GeometricErrors(const Plane* planes, int num_planes,
+//                        const uint8_t* views, int num_views,
+//                        float* errors) const;
+//     reprojection errors in pixels, capped, in the same order; 0 in a view
+//     without a depth map (geometric passes only).
 #pragma once
 
 #include "src/core/checkerboard.h"
@@ -71,21 +74,23 @@ HPM_HD void PhotometricCosts(const Cost& cost,
   }
 }
 
-// The photometric cost of a plane plus, in geometric passes, the geometric
-// term, which is never negative.
+// In geometric passes adds the geometric term, which is never negative, to the
+// photometric costs of several planes.
 template <class Cost>
-HPM_HD float WithGeometricTerm(const VisitParams& params,
-                               const Cost& cost,
-                               const ViewWeights& weights,
-                               const Plane& plane,
-                               float photometric) {
-  if (!params.geometric) return photometric;
-  const PlaneSlope slope = SlopeOf(params.ref, plane);
-  float sum = 0;
-  for (int k = 0; k < weights.num_views; ++k) {
-    sum += weights.weight[k] * cost.GeometricError(slope, weights.view[k]);
+HPM_HD void AddGeometricTerms(const VisitParams& params,
+                              const Cost& cost,
+                              const ViewWeights& weights,
+                              const Plane* planes,
+                              int num_planes,
+                              float* costs) {
+  if (!params.geometric || num_planes == 0) return;
+  float errors[kNumRegions * kMaxViews];
+  cost.GeometricErrors(
+      planes, num_planes, weights.view, weights.num_views, errors);
+  for (int i = 0; i < num_planes; ++i) {
+    costs[i] += params.geometric_term.weight *
+                WeightedMean(weights, &errors[i * weights.num_views], false);
   }
-  return photometric + params.geometric_term.weight * sum / weights.weight_sum;
 }
 
 }  // namespace hpm

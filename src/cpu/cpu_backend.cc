@@ -106,7 +106,6 @@ class CpuBackend : public Backend {
         map.width, map.height, nullptr, nullptr, nullptr, nullptr};
     for (int color = 0; color < 2; ++color) {
       HalfSweep(size, color, control, [&](int col, int row) {
-        if (!filter.LooksAt(col, row)) return uint64_t{0};
         const size_t at = static_cast<size_t>(row) * map.width + col;
         const CpuPixelCost cost = CostAt(col, row);
         consistent[at] = hpm::ConsistentViews(params,
@@ -126,8 +125,7 @@ class CpuBackend : public Backend {
 
  private:
   CpuPixelCost CostAt(int col, int row) const {
-    return {
-        *views_, target_.match_cost, visit_.geometric_term.max_error, col, row};
+    return {*views_, target_, visit_.geometric_term.max_error, col, row};
   }
 
   // Calls visit(col, row) for all pixels of one colour; it returns the number

@@ -1,7 +1,7 @@
 // The CPU backend: SIMD matching cost, threads over bands of rows.
 #pragma once
 
-#include "src/cpu/match_cost.h"
+#include "src/cpu/cpu_target.h"
 #include "src/engine/backend.h"
 
 #include <memory>

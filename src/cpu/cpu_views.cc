@@ -56,11 +56,14 @@ CpuViews::CpuViews(const ViewSet& views, const MethodParams& params)
   for (const View& src : views.srcs) {
     const int j = match_.num_views++;
     PackTexels(*src.image, texels_.data() + offset);
-    to_src_.push_back(MakeViewWarp(views.ref.camera, src.camera));
-    to_ref_.push_back(MakeViewWarp(src.camera, views.ref.camera));
+    const ViewWarp warp = MakeViewWarp(views.ref.camera, src.camera);
+    depth_views_.push_back({warp,
+                            MakeViewWarp(src.camera, views.ref.camera),
+                            src.inverse_depth != nullptr
+                                ? src.inverse_depth->View()
+                                : InverseDepths{nullptr, 0}});
     inverse_depths_.push_back(src.inverse_depth);
     src_centers_.push_back(CamFromWorld(views.ref.camera, Center(src.camera)));
-    const ViewWarp& warp = to_src_.back();
     for (int i = 0; i < 9; ++i) match_.M[i][j] = warp.M.m[i];
     match_.v[0][j] = warp.v.x;
     match_.v[1][j] = warp.v.y;
@@ -91,32 +94,6 @@ RefPatch CpuViews::PatchAt(int col, int row) const {
       },
       col,
       row);
-}
-
-float CpuViews::GeometricError(const PlaneSlope& slope,
-                               int view,
-                               float col,
-                               float row,
-                               float max_error) const {
-  // Without a depth map the view has no say; an error would count against every
-  // hypothesis.
-  if (inverse_depths_[view] == nullptr) return 0;
-  const InverseDepths inverse_depths = inverse_depths_[view]->View();
-  const int width = to_src_[view].width;
-  const int height = to_src_[view].height;
-  return ReprojectionError(
-      Reproject(to_src_[view],
-                to_ref_[view],
-                slope,
-                col,
-                row,
-                [&](float u, float v) {
-                  return InterpolateInverseDepth(
-                      inverse_depths, width, height, u, v);
-                }),
-      col,
-      row,
-      max_error);
 }
 
 uint64_t CpuViews::MemoryNeeded(int width, int height, int num_srcs) {

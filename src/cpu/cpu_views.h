@@ -3,8 +3,7 @@
 #pragma once
 
 #include "src/base/huge_pages.h"
-#include "src/core/geometric_term.h"
-#include "src/cpu/match_cost.h"
+#include "src/cpu/cpu_target.h"
 #include "src/cpu/texel_image.h"
 #include "src/engine/pass.h"
 #include "src/engine/view.h"
@@ -23,14 +22,12 @@ class CpuViews {
   // Camera centre of a source view in the reference camera frame.
   const std::vector<Vec3f>& src_centers() const { return src_centers_; }
 
-  bool HasDepth(int view) const { return inverse_depths_[view] != nullptr; }
+  bool HasDepth(int view) const {
+    return depth_views_[view].inverse_depths.steps != nullptr;
+  }
+  const DepthView* depth_views() const { return depth_views_.data(); }
 
   RefPatch PatchAt(int col, int row) const;
-  float GeometricError(const PlaneSlope& slope,
-                       int view,
-                       float col,
-                       float row,
-                       float max_error) const;
 
   // Bytes for one reference of this size.
   static uint64_t MemoryNeeded(int width, int height, int num_srcs);
@@ -42,20 +39,22 @@ class CpuViews {
   float color_weights_[256];
   std::vector<Texel, HugePageAllocator<Texel>> texels_;
   MatchViews match_;
-  std::vector<ViewWarp> to_src_, to_ref_;
-  std::vector<std::shared_ptr<const InverseDepthMap>> inverse_depths_;
+  std::vector<DepthView> depth_views_;
+  std::vector<std::shared_ptr<const InverseDepthMap>>
+      inverse_depths_;  // owners
   std::vector<Vec3f> src_centers_;
 };
 
 class CpuPixelCost {
  public:
   CpuPixelCost(const CpuViews& views,
-               MatchCostFunction match_cost,
+               const CpuTarget& target,
                float max_geometric_error,
                int col,
                int row)
       : views_(views),
-        match_cost_(match_cost),
+        match_costs_(target.match_costs),
+        geometric_errors_(target.geometric_errors),
         max_geometric_error_(max_geometric_error),
         patch_(views.PatchAt(col, row)),
         col_(col),
@@ -68,25 +67,30 @@ class CpuPixelCost {
                    float* costs) const {
     const MatchRequest request = {
         col_, row_, planes, num_planes, views, num_views};
-    match_cost_(views_.match(), patch_, request, costs);
+    match_costs_(views_.match(), patch_, request, costs);
     num_evaluations_ += static_cast<uint64_t>(request.num_pairs());
   }
 
   bool HasDepth(int view) const { return views_.HasDepth(view); }
 
-  float GeometricError(const PlaneSlope& slope, int view) const {
-    return views_.GeometricError(slope,
-                                 view,
-                                 static_cast<float>(col_),
-                                 static_cast<float>(row_),
-                                 max_geometric_error_);
+  void GeometricErrors(const Plane* planes,
+                       int num_planes,
+                       const uint8_t* views,
+                       int num_views,
+                       float* errors) const {
+    geometric_errors_(views_.match().ref,
+                      views_.depth_views(),
+                      max_geometric_error_,
+                      {col_, row_, planes, num_planes, views, num_views},
+                      errors);
   }
 
   uint64_t num_evaluations() const { return num_evaluations_; }
 
  private:
   const CpuViews& views_;
-  MatchCostFunction match_cost_;
+  MatchCostFunction match_costs_;
+  GeometricErrorFunction geometric_errors_;
   float max_geometric_error_;
   RefPatch patch_;
   int col_, row_;

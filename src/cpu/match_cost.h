@@ -1,13 +1,10 @@
 // The matching cost of src/core/match_cost.h for many (plane, view) pairs at
-// once, one pair per SIMD lane, with runtime dispatch over the machine's
-// targets.
+// once, one pair per SIMD lane.
 #pragma once
 
 #include "src/core/match_cost.h"
 
 #include <cstdint>
-#include <string>
-#include <vector>
 
 namespace hpm {
 
@@ -45,17 +42,5 @@ using MatchCostFunction = void (*)(const MatchViews& match,
                                    const RefPatch& patch,
                                    const MatchRequest& request,
                                    float* costs);
-
-struct CpuTarget {
-  std::string name;  // "scalar", "sse4", "avx2", "avx3", "neon", ...
-  MatchCostFunction match_cost = nullptr;
-};
-
-// All targets that this binary holds and this machine can run, best first,
-// "scalar" (the code of src/core) last.
-std::vector<CpuTarget> CpuTargets();
-
-// `name` = "auto" gives the best one. Throws Error(kUsage) listing the names.
-CpuTarget FindCpuTarget(const std::string& name);
 
 }  // namespace hpm

@@ -1,11 +1,10 @@
 // Compiled once per SIMD target (Highway); see match_cost.h.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "src/cpu/match_cost_simd.cc"
-#include "src/cpu/match_cost.h"
+#include "src/cpu/match_cost_simd.h"
 
-// Vectors of a length unknown to the compiler cannot be array elements, as the
-// warps below are; ARM's servers take NEON.
-#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
+#include "src/cpu/simd_targets.h"
+
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -305,55 +304,15 @@ void MatchCosts(const MatchViews& match,
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-#include "src/base/error.h"
-#include "src/cpu/match_cost_scalar.h"
-
-#include <algorithm>
-#include <cctype>
-#include <iterator>
-
-#include <hwy/targets.h>
 
 namespace hpm {
 namespace {
-
 HWY_EXPORT(MatchCosts);
-
-std::string LowerCase(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) {
-    return static_cast<char>(std::tolower(c));
-  });
-  return text;
-}
-
 }  // namespace
 
-std::vector<CpuTarget> CpuTargets() {
-  std::vector<CpuTarget> targets;
-  for (const int64_t target : hwy::SupportedAndGeneratedTargets()) {
-    if (target == HWY_SCALAR) continue;  // ours is the readable one
-    hwy::ChosenTarget chosen;  // our own, not Highway's process-wide one
-    chosen.Update(target);
-    const size_t index =
-        std::size(HWY_DISPATCH_TABLE(MatchCosts)) > 1 ? chosen.GetIndex() : 0;
-    targets.push_back({LowerCase(hwy::TargetName(target)),
-                       HWY_DISPATCH_TABLE(MatchCosts)[index]});
-  }
-  targets.push_back({"scalar", &ScalarMatchCosts});
-  return targets;
-}
-
-CpuTarget FindCpuTarget(const std::string& name) {
-  const std::vector<CpuTarget> targets = CpuTargets();
-  if (name == "auto") return targets.front();
-  std::string names = "auto";
-  for (const CpuTarget& target : targets) {
-    if (target.name == name) return target;
-    names += ", " + target.name;
-  }
-  throw Error(ErrorCode::kUsage,
-              "--Hpm.cpu_target " + name +
-                  ": not available on this machine; use one of " + names);
+MatchCostFunction SimdMatchCosts(int64_t target) {
+  return HWY_DISPATCH_TABLE(MatchCosts)[TargetIndex(
+      target, std::size(HWY_DISPATCH_TABLE(MatchCosts)))];
 }
 
 }  // namespace hpm

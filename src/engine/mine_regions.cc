@@ -49,13 +49,7 @@ class DepthViews {
     for (const DepthView& view : views_) {
       if (Dot(view.center - point, plane.normal) <= 0) continue;  // its back
       const Reprojection back = Reproject(
-          view.to_src, view.to_ref, slope, col, row, [&](float u, float v) {
-            return InterpolateInverseDepth(view.inverse_depths,
-                                           view.to_src.width,
-                                           view.to_src.height,
-                                           u,
-                                           v);
-          });
+          view.to_src, view.to_ref, slope, col, row, view.inverse_depths);
       // A null depth has the largest error, which does not agree.
       if (!(ReprojectionError(back, col, row, 2 * max_error) <= max_error))
         continue;

@@ -36,7 +36,7 @@ class ConsistencyFilter : public testing::Test {
   uint32_t Mask() const {
     const FakeCost cost = {
         [this](const Plane&, int view) { return costs_[view]; },
-        [this](const PlaneSlope&, int view) { return errors_[view]; },
+        [this](const Plane&, int view) { return errors_[view]; },
         without_depth_};
     return ConsistentViews(params_, filter_, centers_, cost, plane_, 50, 40);
   }
@@ -97,15 +97,6 @@ TEST_F(ConsistencyFilter, DropsReprojectionErrorsInGeometricPassesOnly) {
   EXPECT_EQ(Mask(), 5u);
   errors_[1] = 0.9f;
   EXPECT_EQ(Mask(), 7u);
-}
-
-TEST_F(ConsistencyFilter, LooksAtEveryStepthColumnAndRow) {
-  EXPECT_TRUE(filter_.LooksAt(7, 5));
-  filter_.step = 3;
-  EXPECT_TRUE(filter_.LooksAt(6, 9));
-  EXPECT_TRUE(filter_.LooksAt(0, 0));
-  EXPECT_FALSE(filter_.LooksAt(7, 9));
-  EXPECT_FALSE(filter_.LooksAt(6, 8));
 }
 
 TEST_F(ConsistencyFilter, KeepsNothingWithoutAPlaneInFrontOfTheCamera) {

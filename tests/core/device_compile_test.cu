@@ -66,23 +66,26 @@ struct DeviceCost {
     return views.inverse_depths[view].steps != nullptr;
   }
 
-  __device__ float GeometricError(const PlaneSlope& slope, int view) const {
-    const InverseDepths inverse_depths = views.inverse_depths[view];
-    const int width = views.to_src[view].width;
-    const int height = views.to_src[view].height;
-    return ReprojectionError(
-        Reproject(views.to_src[view],
-                  views.to_ref[view],
-                  slope,
-                  static_cast<float>(col),
-                  static_cast<float>(row),
-                  [&](float u, float v) {
-                    return InterpolateInverseDepth(
-                        inverse_depths, width, height, u, v);
-                  }),
-        static_cast<float>(col),
-        static_cast<float>(row),
-        5.0f);
+  __device__ void GeometricErrors(const Plane* planes,
+                                  int num_planes,
+                                  const uint8_t* asked,
+                                  int num_views,
+                                  float* errors) const {
+    for (int i = 0; i < num_planes; ++i) {
+      for (int k = 0; k < num_views; ++k) {
+        const int view = asked[k];
+        errors[i * num_views + k] =
+            ReprojectionError(Reproject(views.to_src[view],
+                                        views.to_ref[view],
+                                        SlopeOf(views.ref, planes[i]),
+                                        static_cast<float>(col),
+                                        static_cast<float>(row),
+                                        views.inverse_depths[view]),
+                              static_cast<float>(col),
+                              static_cast<float>(row),
+                              5.0f);
+      }
+    }
   }
 };
 

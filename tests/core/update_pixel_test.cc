@@ -156,9 +156,8 @@ TEST_F(UpdatePixelTest, GeometricTermDecidesBetweenEqualCosts) {
   SetAt(9, 0, {{0, 0, -1}, kTrueDepth}, 0.05f);
   const FakeCost cost = {
       [](const Plane&, int) { return 0.5f; },
-      [](const PlaneSlope& slope, int) {
-        const float depth =
-            -1 / ((slope.col + slope.row) * kMiddle + slope.constant);
+      [&](const Plane& plane, int) {
+        const float depth = DepthAt(params_.ref, plane, kMiddle, kMiddle);
         return std::fmin(5.0f, 20 * std::abs(depth - kTrueDepth));
       }};
   Visit(cost);

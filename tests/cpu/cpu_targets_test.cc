@@ -47,9 +47,9 @@ void Compare(const CpuTarget& target,
   std::vector<float> actual = expected;
   const MatchRequest request = {
       col, row, planes.data(), num_planes, views.data(), num_views};
-  FindCpuTarget("scalar").match_cost(
+  FindCpuTarget("scalar").match_costs(
       cpu_views.match(), patch, request, expected.data());
-  target.match_cost(cpu_views.match(), patch, request, actual.data());
+  target.match_costs(cpu_views.match(), patch, request, actual.data());
   EXPECT_TRUE(std::isnan(actual.back()));  // written behind the last pair
   for (size_t i = 0; i + 1 < actual.size(); ++i) {
     ASSERT_GE(actual[i], 0);  // false for NaN
@@ -171,12 +171,71 @@ TEST_P(EveryTarget, NonsensePlanesCostTheMaximum) {
                                      {{0, 0, -1}, -5}};
   const std::vector<uint8_t> views = {0, 1};
   std::vector<float> costs(planes.size() * 2);
-  GetParam().match_cost(
+  GetParam().match_costs(
       cpu_views.match(),
       cpu_views.PatchAt(30, 20),
       {30, 20, planes.data(), static_cast<int>(planes.size()), views.data(), 2},
       costs.data());
   EXPECT_THAT(costs, testing::Each(kMaxCost));
+}
+
+// Source maps with steps, gaps and none at all, views in any number and order.
+TEST_P(EveryTarget, AgreesWithTheScalarGeometricErrors) {
+  const std::vector<RenderedView> rendered =
+      RenderViews(MakeScene("depth_step", Options(6)), 1);
+  ViewSet set = AsViewSet(rendered);
+  std::mt19937 random(4);
+  for (size_t j = 0; j + 1 < set.srcs.size(); ++j) {
+    std::vector<float> inverse;
+    for (const float z : rendered[j + 1].truth.depth)
+      inverse.push_back(random() % 20 == 0 ? 0 : 1 / z);
+    set.srcs[j].inverse_depth =
+        std::make_shared<const InverseDepthMap>(InverseDepthMap::Of(inverse));
+  }
+  const CpuViews cpu_views(set, MethodParams());
+  constexpr float kMaxError = 5;
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  int num_checked = 0, num_small = 0, num_far_apart = 0;
+  for (int row = 0; row < 44; row += 2) {
+    for (int col = 0; col < 60; col += 2) {
+      std::vector<Plane> planes = {{{nan, nan, nan}, nan}, {{0, 0, -1}, -5}};
+      for (int i = 0; i < 4; ++i)
+        planes.push_back(SomeHypothesis(rendered[0], col, row, &random));
+      std::vector<uint8_t> views;
+      for (size_t k = 0; k <= random() % 7; ++k)
+        views.push_back(static_cast<uint8_t>(random() % set.srcs.size()));
+      const MatchRequest request = {col,
+                                    row,
+                                    planes.data(),
+                                    static_cast<int>(planes.size()),
+                                    views.data(),
+                                    static_cast<int>(views.size())};
+      std::vector<float> expected(planes.size() * views.size() + 1, nan);
+      std::vector<float> actual = expected;
+      for (const auto& [target, errors] :
+           {std::pair(FindCpuTarget("scalar"), &expected),
+            std::pair(GetParam(), &actual)}) {
+        target.geometric_errors(set.ref.camera,
+                                cpu_views.depth_views(),
+                                kMaxError,
+                                request,
+                                errors->data());
+      }
+      EXPECT_TRUE(std::isnan(actual.back()));  // written behind the last pair
+      for (size_t i = 0; i + 1 < actual.size(); ++i) {
+        ++num_checked;
+        num_small += expected[i] > 0 && expected[i] < 1;
+        // A position exactly between two taps, or on the border.
+        num_far_apart += !(std::abs(actual[i] - expected[i]) < 1e-2f);
+        if (i < 2 * views.size()) {
+          EXPECT_EQ(actual[i], expected[i]);
+        }
+      }
+    }
+  }
+  EXPECT_GT(num_checked, 10000);
+  EXPECT_GT(num_small, 1000);
+  EXPECT_LE(num_far_apart, num_checked / 1000);
 }
 
 TEST(CpuTargets, EndWithScalarAndHaveDistinctNames) {
@@ -185,7 +244,8 @@ TEST(CpuTargets, EndWithScalarAndHaveDistinctNames) {
   EXPECT_EQ(targets.back().name, "scalar");
   for (size_t i = 0; i < targets.size(); ++i) {
     for (size_t j = 0; j < i; ++j) EXPECT_NE(targets[i].name, targets[j].name);
-    EXPECT_EQ(FindCpuTarget(targets[i].name).match_cost, targets[i].match_cost);
+    EXPECT_EQ(FindCpuTarget(targets[i].name).match_costs,
+              targets[i].match_costs);
   }
   EXPECT_EQ(FindCpuTarget("auto").name, targets.front().name);
 }

@@ -83,8 +83,7 @@ TEST(CpuPixelCost, ScalarCostIsTheTextbookFormula) {
   int num_checked = 0;
   for (int row = 0; row < 44; row += 4) {
     for (int col = 0; col < 60; col += 4) {
-      const CpuPixelCost cost(
-          cpu_views, FindCpuTarget("scalar").match_cost, 5, col, row);
+      const CpuPixelCost cost(cpu_views, FindCpuTarget("scalar"), 5, col, row);
       const size_t at = static_cast<size_t>(row) * 60 + col;
       const float slip = 1 + 0.0002f * static_cast<float>(random() % 100);
       const Plane plane = PlaneFromDepth(set.ref.camera,
@@ -113,8 +112,7 @@ TEST(CpuPixelCost, TruthIsCheapAndErrorsAreNot) {
       RenderViews(MakeScene("tilted_plane", Options()), 4);
   const CpuViews cpu_views(AsViewSet(rendered), MethodParams());
   const int col = 30, row = 22;
-  const CpuPixelCost cost(
-      cpu_views, FindCpuTarget("auto").match_cost, 5, col, row);
+  const CpuPixelCost cost(cpu_views, FindCpuTarget("auto"), 5, col, row);
   const size_t at = static_cast<size_t>(row) * 60 + col;
   Plane planes[2];
   for (int i = 0; i < 2; ++i) {
@@ -143,8 +141,7 @@ TEST(CpuPixelCost, GeometricErrorIsThatOfTheSourcesDepth) {
   set.srcs[1].inverse_depth = std::make_shared<const InverseDepthMap>(
       InverseDepthMap::Of(std::vector<float>(60 * 44, 0.0f)));
   const CpuViews cpu_views(set, MethodParams());
-  const CpuPixelCost cost(
-      cpu_views, FindCpuTarget("auto").match_cost, 5, 30, 22);
+  const CpuPixelCost cost(cpu_views, FindCpuTarget("auto"), 5, 30, 22);
   const size_t at = 22 * 60 + 30;
   const Plane truth = PlaneFromDepth(rendered[0].camera,
                                      30,
@@ -153,12 +150,16 @@ TEST(CpuPixelCost, GeometricErrorIsThatOfTheSourcesDepth) {
                                      rendered[0].truth.normals[at]);
   Plane off = truth;
   off.distance *= 1.05f;
-  EXPECT_LT(cost.GeometricError(SlopeOf(set.ref.camera, truth), 0), 1e-2);
-  EXPECT_GT(cost.GeometricError(SlopeOf(set.ref.camera, off), 0), 0.1);
+  const Plane planes[] = {truth, off};
+  const uint8_t asked[] = {0, 1, 2};
+  float errors[2][3];
+  cost.GeometricErrors(planes, 2, asked, 3, errors[0]);
+  EXPECT_LT(errors[0][0], 1e-2);
+  EXPECT_GT(errors[1][0], 0.1);
   // A map without depth here speaks against the hypothesis; a view without a
   // map has no say.
-  EXPECT_EQ(cost.GeometricError(SlopeOf(set.ref.camera, truth), 1), 5);
-  EXPECT_EQ(cost.GeometricError(SlopeOf(set.ref.camera, truth), 2), 0);
+  EXPECT_EQ(errors[0][1], 5);
+  EXPECT_EQ(errors[0][2], 0);
 }
 
 }  // namespace
