@@ -22,9 +22,10 @@ struct Candidates {
   float matrix[kNumRegions * kMaxViews];  // [region * num_views + k]: view[k]
 };
 
-// Views worth asking: those that two of the pixel and its neighbours trusted,
-// or the pixel itself, and one more in turn, so that a view can come back; with
-// the votes of the neighbours.
+// Views worth asking, with the votes of the neighbours: those that the pixel
+// itself trusted; in a search of the whole range also those that two of it and
+// its neighbours trusted, and one more in turn, so that a view can come back.
+// One at least.
 HPM_HD void ChooseViews(const VisitParams& params,
                         const SamplingPattern& pattern,
                         const PixelState& state,
@@ -44,12 +45,13 @@ HPM_HD void ChooseViews(const VisitParams& params,
     const int r = row + drow[b];
     if (c < 0 || r < 0 || c >= state.width || r >= state.height) continue;
     masks[num_masks] = state.masks[r * state.width + c];
-    trusted |= once & masks[num_masks];
+    if (!params.search_near) trusted |= once & masks[num_masks];
     once |= masks[num_masks++];
   }
   const int turn =
       static_cast<int>(draw * static_cast<float>(params.num_views));
-  if (turn < params.num_views) trusted |= 1u << turn;
+  if ((!params.search_near || trusted == 0) && turn < params.num_views)
+    trusted |= 1u << turn;
   candidates->num_views = 0;
   for (int j = 0; j < params.num_views; ++j) {
     if (!(trusted >> j & 1)) continue;
@@ -62,21 +64,38 @@ HPM_HD void ChooseViews(const VisitParams& params,
   }
 }
 
-// Whether two planes put the samples of the patch less than the bound apart, to
-// first order and for a source camera at the distance of the reference: then
-// they share one row of costs. Converged neighbourhoods hold copies of planes.
-HPM_HD bool NearlySame(const VisitParams& params,
-                       const PlaneSlope& a,
-                       const PlaneSlope& b,
-                       float col,
-                       float row) {
-  const float dcol = a.col - b.col;
-  const float drow = a.row - b.row;
-  const float here = dcol * col + drow * row + a.constant - b.constant;
+// Slopes of the candidates, as structure of arrays.
+struct CandidateSlopes {
+  float col[kNumRegions], row[kNumRegions], constant[kNumRegions];
+};
+
+// Bit j: candidate j and `plane` put the samples of the patch less than the
+// bound apart, to first order and for a source camera at the distance of the
+// reference: then they share one row of costs. Converged neighbourhoods hold
+// copies of planes. No branch: nothing could predict one.
+HPM_HD uint32_t NearlySame(const VisitParams& params,
+                           const CandidateSlopes& slopes,
+                           const PlaneSlope& plane,
+                           float col,
+                           float row) {
   const float radius = static_cast<float>(params.patch_radius);
-  return (fabsf(here) + radius * (fabsf(dcol) + fabsf(drow))) *
-             params.parallax <
-         params.same_plane_bound;
+  uint32_t same = 0;
+  for (int j = 0; j < kNumRegions; ++j) {
+    const float dcol = slopes.col[j] - plane.col;
+    const float drow = slopes.row[j] - plane.row;
+    const float here =
+        dcol * col + drow * row + slopes.constant[j] - plane.constant;
+    const float apart =
+        (fabsf(here) + radius * (fabsf(dcol) + fabsf(drow))) * params.parallax;
+    same |= static_cast<uint32_t>(apart < params.same_plane_bound) << j;
+  }
+  return same;
+}
+
+HPM_HD int LowestBit(uint32_t bits) {
+  int i = 0;
+  while (!(bits >> i & 1)) ++i;
+  return i;
 }
 
 // Costs are not negative: their order is the order of their bits.
@@ -171,7 +190,7 @@ HPM_HD void CollectCandidates(const VisitParams& params,
   const float y = static_cast<float>(row);
   const PlaneSlope current =
       SlopeOf(params.ref, state.planes[row * state.width + col]);
-  PlaneSlope slope[kNumRegions];
+  CandidateSlopes slopes = {};
   int same_as[kNumRegions];  // the region whose row of costs this one shares
   float best_cost[kNumRegions];
   int count[kNumRegions];
@@ -179,7 +198,6 @@ HPM_HD void CollectCandidates(const VisitParams& params,
   Plane batch[kNumRegions];
   int batch_size = 0;
   candidates->exists = 0;
-  candidates->current = 0;
   int sample[kNumRegions];
   for (int i = 0; i < kNumRegions; ++i) {
     best_cost[i] = 1e30f;
@@ -190,23 +208,23 @@ HPM_HD void CollectCandidates(const VisitParams& params,
   }
   candidates->exists =
       CheapestRegions(best_cost, candidates->exists, params.max_candidates);
+  uint32_t different = 0;  // candidates with a row of costs of their own
   for (int i = 0; i < kNumRegions; ++i) {
     if (!(candidates->exists >> i & 1)) continue;
     candidates->plane[i] = state.planes[sample[i]];
-    slope[i] = SlopeOf(params.ref, candidates->plane[i]);
-    if (NearlySame(params, slope[i], current, x, y))
-      candidates->current |= 1u << i;
-    same_as[i] = i;
-    for (int j = 0; j < i && same_as[i] == i; ++j) {
-      if ((candidates->exists >> j & 1) && same_as[j] == j &&
-          NearlySame(params, slope[i], slope[j], x, y)) {
-        same_as[i] = j;
-      }
-    }
+    const PlaneSlope slope = SlopeOf(params.ref, candidates->plane[i]);
+    slopes.col[i] = slope.col;
+    slopes.row[i] = slope.row;
+    slopes.constant[i] = slope.constant;
+    const uint32_t same = NearlySame(params, slopes, slope, x, y) & different;
+    same_as[i] = same != 0 ? LowestBit(same) : i;
     if (same_as[i] != i) continue;
+    different |= 1u << i;
     batch_region[batch_size] = static_cast<uint8_t>(i);
     batch[batch_size++] = candidates->plane[i];
   }
+  candidates->current =
+      NearlySame(params, slopes, current, x, y) & candidates->exists;
   const int num_views = candidates->num_views;
 
   float costs[kNumRegions * kMaxViews];

@@ -10,7 +10,6 @@
 namespace hpm {
 
 constexpr int kNumRefined = 6;
-constexpr int kFirstNear = 3;  // from here on they lie near the current one
 
 // Uniform on the hemisphere that faces the camera along `ray`.
 HPM_HD Vec3f RandomNormal(const Vec3f& ray, Rng* rng) {
@@ -38,24 +37,33 @@ HPM_HD Vec3f PerturbNormal(const Vec3f& n,
   return Dot(z, ray) < 0 ? z : n;
 }
 
-// The six hypotheses beside the current one, in the order of the specification:
-// (z_r,n) (z,n_r) (z_r,n_r) (z,n_p) (z_p,n) (z_p,n_p).
-HPM_HD void CombineHypotheses(const Camera& camera,
-                              float col,
-                              float row,
-                              float z,
-                              const Vec3f& n,
-                              float z_random,
-                              const Vec3f& n_random,
-                              float z_perturbed,
-                              const Vec3f& n_perturbed,
-                              Plane planes[kNumRefined]) {
+// The hypotheses beside the current one, in the order of the specification:
+// (z_r,n) (z,n_r) (z_r,n_r) with a random depth and normal,
+HPM_HD void RandomHypotheses(const Camera& camera,
+                             float col,
+                             float row,
+                             float z,
+                             const Vec3f& n,
+                             float z_random,
+                             const Vec3f& n_random,
+                             Plane planes[3]) {
   planes[0] = PlaneFromDepth(camera, col, row, z_random, n);
   planes[1] = PlaneFromDepth(camera, col, row, z, n_random);
   planes[2] = PlaneFromDepth(camera, col, row, z_random, n_random);
-  planes[3] = PlaneFromDepth(camera, col, row, z, n_perturbed);
-  planes[4] = PlaneFromDepth(camera, col, row, z_perturbed, n);
-  planes[5] = PlaneFromDepth(camera, col, row, z_perturbed, n_perturbed);
+}
+
+// and (z,n_p) (z_p,n) (z_p,n_p) with perturbed ones.
+HPM_HD void NearHypotheses(const Camera& camera,
+                           float col,
+                           float row,
+                           float z,
+                           const Vec3f& n,
+                           float z_perturbed,
+                           const Vec3f& n_perturbed,
+                           Plane planes[3]) {
+  planes[0] = PlaneFromDepth(camera, col, row, z, n_perturbed);
+  planes[1] = PlaneFromDepth(camera, col, row, z_perturbed, n);
+  planes[2] = PlaneFromDepth(camera, col, row, z_perturbed, n_perturbed);
 }
 
 }  // namespace hpm

@@ -93,41 +93,40 @@ HPM_HD int RefinedPlanes(const VisitParams& params,
                          Plane planes[kNumRefined]) {
   const Vec3f ray = RayAt(params.ref, x, y);
   const float depth = -best.distance / Dot(best.normal, ray);
-  float z_random;
-  Vec3f n_random;
-  if (prior != nullptr) {
-    const float prior_depth = -prior->distance / Dot(prior->normal, ray);
-    z_random =
-        prior_depth + rng->Uniform(-3.0f, 3.0f) * params.prior_term.sigma_depth;
-    n_random = PerturbNormal(
-        prior->normal, ray, 0.5f * params.prior_term.sigma_angle, rng);
+  int num_planes = 0;
+  if (params.search_near) {
+    if (prior != nullptr) planes[num_planes++] = *prior;
   } else {
-    z_random = rng->Uniform(params.depth_min, params.depth_max);
-    n_random = RandomNormal(ray, rng);
+    float z_random;
+    Vec3f n_random;
+    if (prior != nullptr) {
+      const float prior_depth = -prior->distance / Dot(prior->normal, ray);
+      z_random = prior_depth +
+                 rng->Uniform(-3.0f, 3.0f) * params.prior_term.sigma_depth;
+      n_random = PerturbNormal(
+          prior->normal, ray, 0.5f * params.prior_term.sigma_angle, rng);
+    } else {
+      z_random = rng->Uniform(params.depth_min, params.depth_max);
+      n_random = RandomNormal(ray, rng);
+    }
+    RandomHypotheses(
+        params.ref, x, y, depth, best.normal, z_random, n_random, planes);
+    if (prior != nullptr) planes[0] = *prior;
+    num_planes = 3;
   }
   const float z_perturbed = depth * rng->Uniform(1 - params.depth_perturbation,
                                                  1 + params.depth_perturbation);
   const Vec3f n_perturbed =
       PerturbNormal(best.normal, ray, params.normal_perturbation, rng);
-  CombineHypotheses(params.ref,
-                    x,
-                    y,
-                    depth,
-                    best.normal,
-                    z_random,
-                    n_random,
-                    z_perturbed,
-                    n_perturbed,
-                    planes);
-  if (!params.search_near) {
-    if (prior != nullptr) planes[0] = *prior;
-    return kNumRefined;
-  }
-  int num_planes = 0;
-  if (prior != nullptr) planes[num_planes++] = *prior;
-  for (int i = kFirstNear; i < kNumRefined; ++i)
-    planes[num_planes++] = planes[i];
-  return num_planes;
+  NearHypotheses(params.ref,
+                 x,
+                 y,
+                 depth,
+                 best.normal,
+                 z_perturbed,
+                 n_perturbed,
+                 planes + num_planes);
+  return num_planes + 3;
 }
 
 template <class Cost>
@@ -173,8 +172,7 @@ HPM_HD void UpdatePixel(const VisitParams& params,
 
   Best best = {state.planes[at], 0, 0};
   if (candidates.current != 0) {
-    int same = 0;
-    while (!(candidates.current >> same & 1)) ++same;
+    const int same = LowestBit(candidates.current);
     best.cost = WeightedMean(
         weights, &candidates.matrix[same * candidates.num_views], true);
   } else {

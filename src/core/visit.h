@@ -40,7 +40,8 @@ struct VisitParams {
   PriorTerm prior_term;
   int max_drawn_views;  // see KeepLargest()
   int max_candidates;   // regions that a visit looks into
-  // Refinement without hypotheses from the whole depth range.
+  // The hypotheses are those of a surface, their views have just been judged:
+  // neither the whole depth range nor other views are searched.
   bool search_near;
 };
 

@@ -99,7 +99,7 @@ class StageList {
                  next_id_++};
     pass.regions = regions;
     pass.max_candidates = fast_ ? 3 : 4;
-    if (fast_) pass.max_drawn_views = 2;
+    pass.max_drawn_views = 2;
     stage.passes.push_back(pass);
     stages_->push_back(stage);
   }

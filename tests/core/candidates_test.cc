@@ -90,7 +90,19 @@ TEST(NearlySame, BoundsTheShiftOfThePatchInTheSourceView) {
                           static_cast<float>(std::hypot(moved.x(), moved.y())));
       }
     }
-    if (NearlySame(params, SlopeOf(ref, a), SlopeOf(ref, b), 100, 75)) {
+    // In a row of others that are far away.
+    const int place = i % kNumRegions;
+    CandidateSlopes slopes;
+    for (int j = 0; j < kNumRegions; ++j) {
+      const PlaneSlope slope =
+          SlopeOf(ref, j == place ? a : Plane{{0, 0, -1}, 1});
+      slopes.col[j] = slope.col;
+      slopes.row[j] = slope.row;
+      slopes.constant[j] = slope.constant;
+    }
+    const uint32_t same = NearlySame(params, slopes, SlopeOf(ref, b), 100, 75);
+    EXPECT_EQ(same & ~(1u << place), 0u);
+    if (same != 0) {
       ++num_same;
       EXPECT_LT(shift, 2 * kBound);
     } else {
