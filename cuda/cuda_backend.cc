@@ -176,7 +176,7 @@ class CudaBackendImpl : public CudaBackend {
     UseDevice();
     SetPass(pass, pattern, &tables_);
     const PixelState state = Upload(*map, control.continues);
-    const int num_steps = NumSteps(pass);
+    const int num_steps = pass.NumSteps();
     int step = 0;
     for (const Sweep& sweep : SweepsOf(pass, random_key_)) {
       RunSweep(sweep, state, nullptr, control);

@@ -2,33 +2,29 @@
 
 namespace hpm {
 
-int NumSteps(const Pass& pass) {
-  return (pass.start == StartFrom::kStored ? 0 : 2) + 2 * pass.num_iterations;
-}
-
 std::vector<Sweep> SweepsOf(const Pass& pass, uint64_t random_key) {
   const uint64_t pass_key = CombineBits(random_key, pass.id);
   Sweep sweep = {};
   sweep.geometric = pass.kind == PassKind::kGeometric;
   sweep.start = pass.start;
   std::vector<Sweep> sweeps;
-  const auto add_both_colors = [&] {
-    for (sweep.color = 0; sweep.color < 2; ++sweep.color) {
+  const auto add_colors_from = [&](int first) {
+    for (sweep.color = first; sweep.color < 2; ++sweep.color) {
       sweeps.push_back(sweep);
     }
   };
   sweep.kind = SweepKind::kInitialize;
   sweep.key = CombineBits(pass_key, 0);
-  if (pass.start != StartFrom::kStored) add_both_colors();
+  if (pass.start != StartFrom::kStored) add_colors_from(0);
   sweep.kind = SweepKind::kUpdate;
   for (int iteration = 0; iteration < pass.num_iterations; ++iteration) {
     sweep.iteration = iteration;
     sweep.key = CombineBits(pass_key, 1 + iteration);
-    add_both_colors();
+    add_colors_from(pass.first_color());
   }
   if (pass.median) {
     sweep.kind = SweepKind::kMedian;
-    add_both_colors();
+    add_colors_from(0);
   }
   return sweeps;
 }

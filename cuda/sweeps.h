@@ -9,9 +9,6 @@
 
 namespace hpm {
 
-// Half-sweeps that count for the progress of a pass: all but the median's.
-int NumSteps(const Pass& pass);
-
 std::vector<Sweep> SweepsOf(const Pass& pass, uint64_t random_key);
 
 // The filter of finished maps.

@@ -28,7 +28,11 @@ ScheduleOptions MakeScheduleOptions(const ControllerOptions& options) {
       options.hpm.num_levels,
       options.hpm.num_fine_iterations,
       options.hpm.num_fine_geom_passes,
-      options.hpm.prior == "regions"};
+      options.hpm.prior == "regions",
+      options.hpm.half_search < 0
+          ? HalfSearch::kAuto
+          : (options.hpm.half_search == 0 ? HalfSearch::kOff
+                                          : HalfSearch::kOn)};
 }
 
 FilterParams MakeFilterParams(const PatchMatchStereoOptions& options,

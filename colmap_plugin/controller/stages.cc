@@ -14,7 +14,7 @@ namespace hpm {
 namespace {
 
 // Raise when the same options give other maps.
-constexpr int kAlgorithmVersion = 4;
+constexpr int kAlgorithmVersion = 5;
 
 std::vector<Stage> MakeStages(const Schedule& schedule) {
   std::vector<Stage> stages;
@@ -100,6 +100,7 @@ std::string OwnFingerprint(const Workspace& workspace,
     hash.AddInt(static_cast<int>(pass.kind)).AddInt(pass.num_iterations);
     hash.AddInt(pass.id).AddInt(pass.level);
     hash.AddInt(pass.max_candidates).AddInt(pass.max_drawn_views);
+    hash.AddInt(pass.half);
   }
   if (stage.spec.geometric) {
     hash.AddDouble(params.geom_weight).AddDouble(params.geom_max_error);

@@ -182,6 +182,9 @@ std::vector<OptionSpec> MakeTable() {
           "Hpm.num_iterations at levels finer than the coarsest (Hpm.prior regions)"),
       Hpm(kExpert, "num_fine_geom_passes", &H::num_fine_geom_passes, AtLeast(1),
           "Hpm.num_geom_passes at levels finer than the coarsest (Hpm.prior regions)"),
+      Hpm(kExpert, "half_search", &H::half_search, Between(-1, 1),
+          "Hpm.num_iterations, and one more, at half the size of the coarsest level; -1: for "
+          "hpm_fast, and where there is one level (Hpm.prior regions)"),
       Hpm(kExpert, "max_views", &H::max_views, Between(1, kMaxViews),
           "Source images that judge a pixel at a time, chosen anew in every iteration"),
       Hpm(kExpert, "prior", &H::prior, OneOf({"regions", "triangles"}),

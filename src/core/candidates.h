@@ -22,10 +22,30 @@ struct Candidates {
   float matrix[kNumRegions * kMaxViews];  // [region * num_views + k]: view[k]
 };
 
-// Views worth asking, with the votes of the neighbours: those that the pixel
-// itself trusted; in a search of the whole range also those that two of it and
-// its neighbours trusted, and one more in turn, so that a view can come back.
-// One at least.
+// Takes away views of fewest votes, from view `turn` on, until `count` are
+// left.
+HPM_HD uint32_t MostVoted(uint32_t views,
+                          const uint32_t votes[kMaxViews],
+                          int num_views,
+                          int count,
+                          int turn) {
+  int num_left = 0;
+  for (int j = 0; j < num_views; ++j) num_left += views >> j & 1;
+  for (; num_left > count; --num_left) {
+    int least = -1;
+    for (int i = 0; i < num_views; ++i) {
+      const int j = turn + i < num_views ? turn + i : turn + i - num_views;
+      if ((views >> j & 1) && (least < 0 || votes[j] < votes[least])) least = j;
+    }
+    views &= ~(1u << least);
+  }
+  return views;
+}
+
+// Views worth asking, with the votes of the neighbours. In a search of the
+// whole range those that the pixel itself or two of its neighbours trusted, and
+// one more in turn, so that a view can come back; near a surface the most voted
+// of those that the pixel has just trusted. One at least.
 HPM_HD void ChooseViews(const VisitParams& params,
                         const SamplingPattern& pattern,
                         const PixelState& state,
@@ -35,8 +55,8 @@ HPM_HD void ChooseViews(const VisitParams& params,
                         Candidates* candidates) {
   uint32_t trusted = state.masks[row * state.width + col];
   uint32_t once = trusted;
-  uint32_t masks[4] = {};
-  int num_masks = 0;
+  uint32_t votes[kMaxViews] = {};
+  int num_voters = 0;
   const int d = pattern.mask_distance;
   const int dcol[4] = {0, 0, -d, d};
   const int drow[4] = {-d, d, 0, 0};
@@ -44,22 +64,25 @@ HPM_HD void ChooseViews(const VisitParams& params,
     const int c = col + dcol[b];
     const int r = row + drow[b];
     if (c < 0 || r < 0 || c >= state.width || r >= state.height) continue;
-    masks[num_masks] = state.masks[r * state.width + c];
-    if (!params.search_near) trusted |= once & masks[num_masks];
-    once |= masks[num_masks++];
+    const uint32_t mask = state.masks[r * state.width + c];
+    for (int j = 0; j < params.num_views; ++j) votes[j] += mask >> j & 1;
+    if (!params.search_near) trusted |= once & mask;
+    once |= mask;
+    ++num_voters;
   }
-  const int turn =
-      static_cast<int>(draw * static_cast<float>(params.num_views));
-  if ((!params.search_near || trusted == 0) && turn < params.num_views)
-    trusted |= 1u << turn;
+  int turn = static_cast<int>(draw * static_cast<float>(params.num_views));
+  if (turn == params.num_views) turn = 0;  // rounding
+  if (!params.search_near || trusted == 0) trusted |= 1u << turn;
+  if (params.search_near) {
+    trusted = MostVoted(
+        trusted, votes, params.num_views, params.max_drawn_views, turn);
+  }
   candidates->num_views = 0;
   for (int j = 0; j < params.num_views; ++j) {
     if (!(trusted >> j & 1)) continue;
-    uint32_t num_votes = 0;
-    for (int b = 0; b < 4; ++b) num_votes += masks[b] >> j & 1;
     candidates->votes[candidates->num_views] =
-        0.1f * static_cast<float>(num_masks) +
-        0.8f * static_cast<float>(num_votes);
+        0.1f * static_cast<float>(num_voters) +
+        0.8f * static_cast<float>(votes[j]);
     candidates->view[candidates->num_views++] = static_cast<uint8_t>(j);
   }
 }

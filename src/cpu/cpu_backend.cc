@@ -2,6 +2,7 @@
 
 #include "src/core/initialize_pixel.h"
 #include "src/core/median_filter.h"
+#include "src/core/take_neighbour.h"
 #include "src/core/update_pixel.h"
 #include "src/cpu/cpu_views.h"
 #include "src/engine/visit_params.h"
@@ -55,9 +56,7 @@ class CpuBackend : public Backend {
     const PixelState state = map->View();
     const VisitParams params = ForPass(visit_, method_, pass);
     const uint64_t pass_key = CombineBits(random_key_, pass.id);
-    // Two half-sweeps each.
-    const int num_steps =
-        (pass.start == StartFrom::kStored ? 0 : 2) + 2 * pass.num_iterations;
+    const int num_steps = pass.NumSteps();
     int step = 0;
     const auto finish_step = [&] {
       if (control.progress)
@@ -77,7 +76,7 @@ class CpuBackend : public Backend {
     }
     for (int iteration = 0; iteration < pass.num_iterations; ++iteration) {
       const uint64_t key = CombineBits(pass_key, 1 + iteration);
-      for (int color = 0; color < 2; ++color) {
+      for (int color = pass.first_color(); color < 2; ++color) {
         HalfSweep(state, color, control, [&](int col, int row) {
           const CpuPixelCost cost = CostAt(col, row);
           Rng rng(key, col, row);
@@ -86,6 +85,12 @@ class CpuBackend : public Backend {
         });
         finish_step();
       }
+    }
+    if (pass.half) {
+      HalfSweep(state, 0, control, [&](int col, int row) {
+        TakeNeighbour(state, col, row);
+        return uint64_t{0};
+      });
     }
     for (int color = 0; pass.median && color < 2; ++color) {
       HalfSweep(state, color, control, [&](int col, int row) {

@@ -53,6 +53,16 @@ struct Pass {
   RegionPriors regions = RegionPriors::kNone;  // kGeometric only
   int max_candidates = kNumRegions;  // regions that a visit looks into
   int max_drawn_views = kMaxViews;   // and not more than of MethodParams
+  // Only one colour of the checkerboard is visited after the start; the median
+  // at the end gives the other one its depth.
+  bool half = false;
+
+  int first_color() const { return half ? 1 : 0; }
+  // Half-sweeps that count for the progress: all but the median's.
+  int NumSteps() const {
+    return (start == StartFrom::kStored ? 0 : 2) +
+           (2 - first_color()) * num_iterations;
+  }
 };
 
 }  // namespace hpm

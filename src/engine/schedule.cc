@@ -100,6 +100,7 @@ class StageList {
     pass.regions = regions;
     pass.max_candidates = fast_ ? 3 : 4;
     pass.max_drawn_views = 2;
+    pass.half = fast_;
     stage.passes.push_back(pass);
     stages_->push_back(stage);
   }
@@ -133,24 +134,28 @@ void AddRegionStages(bool fast,
                      const ScheduleOptions& options,
                      StageList* list) {
   const int coarsest = options.num_levels - 1;
+  const int search_iterations =
+      std::max(1, options.num_iterations - (fast ? 1 : 0));
+  const bool half_search = options.num_geom_passes > 0 &&
+                           (options.half_search == HalfSearch::kAuto
+                                ? fast || options.num_levels == 1
+                                : options.half_search == HalfSearch::kOn);
+  // A quarter of the pixels: one iteration more is cheap.
+  if (half_search)
+    list->AddPhotometric(coarsest + 1, false, search_iterations + 1, {});
   for (int level = coarsest; level >= 0; --level) {
     const bool is_coarsest = level == coarsest;
-    int num_iterations =
-        is_coarsest ? options.num_iterations : options.num_fine_iterations;
+    int num_iterations = is_coarsest ? (half_search ? 0 : search_iterations)
+                                     : (fast ? 0 : options.num_fine_iterations);
     int num_geom_passes =
         is_coarsest ? options.num_geom_passes : options.num_fine_geom_passes;
-    if (fast) {
-      num_iterations = is_coarsest ? std::max(1, num_iterations - 1) : 0;
-      num_geom_passes = (num_geom_passes + 1) / 2;
-      // The finer levels' passes go on where these end.
-      if (is_coarsest && level > 0)
-        num_geom_passes = std::max(1, num_geom_passes - 1);
-    }
+    if (fast) num_geom_passes = (num_geom_passes + 1) / 2;
     if (options.num_geom_passes == 0) {
       num_iterations = std::max(1, num_iterations);
       num_geom_passes = 0;
     }
-    list->AddPhotometric(level, !is_coarsest, num_iterations, {});
+    list->AddPhotometric(
+        level, half_search || !is_coarsest, num_iterations, {});
     for (int i = 0; i < num_geom_passes; ++i) {
       const bool last = level == 0 && i + 1 == num_geom_passes;
       list->AddGeometric(level,

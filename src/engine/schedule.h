@@ -9,6 +9,8 @@
 
 namespace hpm {
 
+enum class HalfSearch { kAuto, kOff, kOn };
+
 struct ScheduleOptions {
   std::string method = "hpm";
   int num_iterations = 2;       // of basic and prior passes
@@ -20,10 +22,13 @@ struct ScheduleOptions {
   int num_fine_iterations = 0;
   int num_fine_geom_passes = 1;
   // hpm and hpm_fast mine planes of regions (src/engine/mine_regions.h) at
-  // every level of the images, hpm_fast with half the geometric passes, one
-  // iteration less at the coarsest and none at finer levels; else triangles of
-  // credible points as the paper does.
+  // every level of the images, hpm_fast with half the geometric passes, which
+  // visit half the pixels, one iteration less at the coarsest and none at finer
+  // levels; else triangles of credible points as the paper does.
   bool region_priors = true;
+  // With region priors: the iterations of the coarsest level, and one more,
+  // run at half its size. kAuto: in hpm_fast, and where there is one level.
+  HalfSearch half_search = HalfSearch::kAuto;
 };
 
 // What runs without looking at other images' results. Between stages lies a

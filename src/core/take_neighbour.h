@@ -1,0 +1,35 @@
+// A pixel that a pass has not visited follows those that it has.
+#pragma once
+
+#include "src/core/pixel_state.h"
+
+namespace hpm {
+
+// What a matching cost may rise, for a plane refined at this size in place of
+// one that came up from a coarser level.
+constexpr float kRefinedMayCostMore = 0.1f;
+
+// Takes the hypothesis of the direct neighbour, of the other colour, whose cost
+// is smallest; keeps its own where it matches clearly better.
+HPM_HD void TakeNeighbour(const PixelState& state, int col, int row) {
+  const int at = row * state.width + col;
+  const int dcol[4] = {0, -1, 1, 0};
+  const int drow[4] = {-1, 0, 0, 1};
+  int best = at;
+  float best_cost = state.costs[at] + kRefinedMayCostMore;
+  for (int b = 0; b < 4; ++b) {
+    const int c = col + dcol[b];
+    const int r = row + drow[b];
+    if (c < 0 || r < 0 || c >= state.width || r >= state.height) continue;
+    const int neighbour = r * state.width + c;
+    if (!(state.costs[neighbour] < best_cost)) continue;
+    best = neighbour;
+    best_cost = state.costs[neighbour];
+  }
+  if (best == at) return;
+  state.planes[at] = state.planes[best];
+  state.costs[at] = state.costs[best];
+  state.masks[at] = state.masks[best];
+}
+
+}  // namespace hpm
