@@ -24,6 +24,8 @@ const char* PhaseOf(SweepKind kind) {
       return "initialise";
     case SweepKind::kUpdate:
       return "update";
+    case SweepKind::kFollow:
+      return "follow";
     case SweepKind::kMedian:
       return "median";
     case SweepKind::kConsistency:

@@ -1,4 +1,5 @@
-// Kernels that need no matching cost: the median and the making of images.
+// Kernels that need no matching cost: followers, the median, the making of
+// images.
 #include "cuda/check.h"
 #include "cuda/launch.h"
 #include "cuda/texel_image.h"
@@ -10,14 +11,24 @@ namespace {
 
 constexpr int kBlock = 128;
 
+// The pixel of this thread; not inside the image: nothing to do.
+__device__ Pixel PixelOfThread(const Band& band) {
+  const int64_t thread =
+      static_cast<int64_t>(blockIdx.x) * blockDim.x + threadIdx.x;
+  if (thread >= band.num_warps() * kWarpSize) return {0, 0, false};
+  return PixelOf(
+      band, thread / kWarpSize, static_cast<int>(thread % kWarpSize));
+}
+
+__global__ void FollowKernel(const PixelState state, const Band band) {
+  const Pixel pixel = PixelOfThread(band);
+  if (pixel.inside) TakeNeighbour(state, pixel.col, pixel.row);
+}
+
 __global__ void MedianKernel(const Camera camera,
                              const PixelState state,
                              const Band band) {
-  const int64_t thread =
-      static_cast<int64_t>(blockIdx.x) * blockDim.x + threadIdx.x;
-  if (thread >= band.num_warps() * kWarpSize) return;
-  const Pixel pixel =
-      PixelOf(band, thread / kWarpSize, static_cast<int>(thread % kWarpSize));
+  const Pixel pixel = PixelOfThread(band);
   if (!pixel.inside) return;
   MedianFilterPixel(camera, state, pixel.col, pixel.row);
 }
@@ -73,6 +84,14 @@ unsigned Blocks(size_t threads) {
 }
 
 }  // namespace
+
+void LaunchFollow(const SweepLaunch& launch, cudaStream_t stream) {
+  FollowKernel<<<Blocks(launch.band.num_warps() * kWarpSize),
+                 kBlock,
+                 0,
+                 stream>>>(launch.state, launch.band);
+  CheckCuda(cudaGetLastError(), "starting the neighbours' followers");
+}
 
 void LaunchMedian(const SweepLaunch& launch, cudaStream_t stream) {
   MedianKernel<<<Blocks(launch.band.num_warps() * kWarpSize),

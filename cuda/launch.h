@@ -22,6 +22,7 @@ struct SweepLaunch {
 
 void LaunchTextureSweep(const SweepLaunch& launch, cudaStream_t stream);
 void LaunchQuadSweep(const SweepLaunch& launch, cudaStream_t stream);
+void LaunchFollow(const SweepLaunch& launch, cudaStream_t stream);
 void LaunchMedian(const SweepLaunch& launch, cudaStream_t stream);
 
 // costs[pixel * num_views + view] of each pixel's plane in the band.

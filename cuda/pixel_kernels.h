@@ -7,13 +7,14 @@
 #include "src/core/consistency_filter.h"
 #include "src/core/initialize_pixel.h"
 #include "src/core/median_filter.h"
+#include "src/core/take_neighbour.h"
 #include "src/core/update_pixel.h"
 #include "src/core/upsample_plane.h"
 
 namespace hpm {
 
 // A half-sweep of one kind, as data.
-enum class SweepKind { kInitialize, kUpdate, kMedian, kConsistency };
+enum class SweepKind { kInitialize, kUpdate, kFollow, kMedian, kConsistency };
 
 struct Sweep {
   SweepKind kind;
@@ -35,7 +36,8 @@ HPM_HD void VisitPixel(const DeviceProblem& problem,
                        const Cost& cost,
                        int col,
                        int row) {
-  static_assert(kKind != SweepKind::kMedian, "MedianFilterPixel needs no cost");
+  static_assert(kKind != SweepKind::kFollow && kKind != SweepKind::kMedian,
+                "TakeNeighbour and MedianFilterPixel need no cost");
   if constexpr (kKind == SweepKind::kConsistency) {
     const size_t at = static_cast<size_t>(row) * state.width + col;
     consistent[at] = 0;

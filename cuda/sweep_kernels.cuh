@@ -169,6 +169,9 @@ void LaunchSweepWith(const SweepLaunch& launch, cudaStream_t stream) {
     case SweepKind::kConsistency:
       start(&DirectSweep<SweepKind::kConsistency, Sampler>);
       break;
+    case SweepKind::kFollow:
+      LaunchFollow(launch, stream);
+      break;
     case SweepKind::kMedian:
       LaunchMedian(launch, stream);
       break;

@@ -22,6 +22,11 @@ std::vector<Sweep> SweepsOf(const Pass& pass, uint64_t random_key) {
     sweep.key = CombineBits(pass_key, 1 + iteration);
     add_colors_from(pass.first_color());
   }
+  if (pass.half) {
+    sweep.kind = SweepKind::kFollow;
+    sweep.color = 0;
+    sweeps.push_back(sweep);
+  }
   if (pass.median) {
     sweep.kind = SweepKind::kMedian;
     add_colors_from(0);

@@ -53,8 +53,8 @@ struct Pass {
   RegionPriors regions = RegionPriors::kNone;  // kGeometric only
   int max_candidates = kNumRegions;  // regions that a visit looks into
   int max_drawn_views = kMaxViews;   // and not more than of MethodParams
-  // Only one colour of the checkerboard is visited after the start; the median
-  // at the end gives the other one its depth.
+  // Only one colour of the checkerboard is visited after the start; the other
+  // one follows it in the end (src/core/take_neighbour.h).
   bool half = false;
 
   int first_color() const { return half ? 1 : 0; }

@@ -89,7 +89,8 @@ class StageList {
     stages_->push_back(stage);
   }
 
-  void AddGeometric(int level, RegionPriors regions) {
+  // half: see Pass; hpm_fast is content with that everywhere.
+  void AddGeometric(int level, RegionPriors regions, bool half) {
     StageSpec stage;
     stage.level = level;
     stage.geometric = true;
@@ -100,7 +101,7 @@ class StageList {
     pass.regions = regions;
     pass.max_candidates = fast_ ? 3 : 4;
     pass.max_drawn_views = 2;
-    pass.half = fast_;
+    pass.half = half || fast_;
     stage.passes.push_back(pass);
     stages_->push_back(stage);
   }
@@ -123,7 +124,7 @@ void AddStages(const Method& method,
                          options.num_iterations,
                          PriorLevels(method.priors, options.num_levels));
     for (int i = 0; i < options.num_geom_passes; ++i)
-      list->AddGeometric(level, RegionPriors::kNone);
+      list->AddGeometric(level, RegionPriors::kNone, false);
   }
 }
 
@@ -157,9 +158,11 @@ void AddRegionStages(bool fast,
     list->AddPhotometric(
         level, half_search || !is_coarsest, num_iterations, {});
     for (int i = 0; i < num_geom_passes; ++i) {
-      const bool last = level == 0 && i + 1 == num_geom_passes;
-      list->AddGeometric(level,
-                         last ? RegionPriors::kStrong : RegionPriors::kWeak);
+      const bool last = i + 1 == num_geom_passes;
+      list->AddGeometric(
+          level,
+          last && level == 0 ? RegionPriors::kStrong : RegionPriors::kWeak,
+          !last);
     }
   }
 }

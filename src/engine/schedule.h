@@ -22,9 +22,10 @@ struct ScheduleOptions {
   int num_fine_iterations = 0;
   int num_fine_geom_passes = 1;
   // hpm and hpm_fast mine planes of regions (src/engine/mine_regions.h) at
-  // every level of the images, hpm_fast with half the geometric passes, which
-  // visit half the pixels, one iteration less at the coarsest and none at finer
-  // levels; else triangles of credible points as the paper does.
+  // every level of the images; else triangles of credible points as the paper
+  // does. All geometric passes but the last of a level visit half the pixels.
+  // hpm_fast takes half the geometric passes, which all visit half the pixels,
+  // one iteration less at the coarsest level and none at finer ones.
   bool region_priors = true;
   // With region priors: the iterations of the coarsest level, and one more,
   // run at half its size. kAuto: in hpm_fast, and where there is one level.

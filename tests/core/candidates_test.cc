@@ -114,6 +114,21 @@ TEST(NearlySame, BoundsTheShiftOfThePatchInTheSourceView) {
   EXPECT_GT(num_different, 100);
 }
 
+TEST(MostVoted, KeepsTheViewsOfMostVotes) {
+  const uint32_t votes[kMaxViews] = {3, 1, 4, 0, 2};
+  EXPECT_EQ(MostVoted(0b11111, votes, 5, 2, 0), 0b00101u);
+  EXPECT_EQ(MostVoted(0b11011, votes, 5, 2, 3), 0b10001u);
+  EXPECT_EQ(MostVoted(0b01010, votes, 5, 2, 0), 0b01010u);
+  EXPECT_EQ(MostVoted(0b00100, votes, 5, 2, 0), 0b00100u);
+}
+
+TEST(MostVoted, AmongEqualsTheTurnDecides) {
+  const uint32_t votes[kMaxViews] = {};
+  EXPECT_EQ(MostVoted(0b111, votes, 3, 1, 0), 0b100u);
+  EXPECT_EQ(MostVoted(0b111, votes, 3, 1, 1), 0b001u);
+  EXPECT_EQ(MostVoted(0b111, votes, 3, 1, 2), 0b010u);
+}
+
 constexpr int kSide = 201;
 constexpr int kMiddle = 100;
 
@@ -199,6 +214,32 @@ TEST_F(CollectCandidatesTest, MatrixHoldsTheCostOfEachCandidateInEachView) {
                 cost.photometric(candidates.plane[i], j));
     }
   }
+}
+
+// In a search the views that two trust and one in turn; near a surface the most
+// voted of the pixel's own.
+TEST_F(CollectCandidatesTest, NearASurfaceOnlyViewsJustTrustedAreAsked) {
+  params_.num_views = 6;
+  params_.max_drawn_views = 2;
+  masks_[Index(kMiddle, kMiddle)] = 0b000111;
+  const int dcol[4] = {0, 0, -5, 5}, drow[4] = {-5, 5, 0, 0};
+  const uint32_t around[4] = {0b001101, 0b001100, 0b001010, 0b000000};
+  for (int b = 0; b < 4; ++b)
+    masks_[Index(kMiddle + dcol[b], kMiddle + drow[b])] = around[b];
+  draw_ = 0.99f;  // the turn of view 5
+  const auto asked = [&] {
+    const Candidates candidates = Collect(false, convincing_);
+    uint32_t views = 0;
+    for (int k = 0; k < candidates.num_views; ++k)
+      views |= 1u << candidates.view[k];
+    return views;
+  };
+  EXPECT_EQ(asked(), 0b101111u);
+  params_.search_near = true;
+  // Votes 1, 1 and 2; from the turn on the first of fewest goes.
+  EXPECT_EQ(asked(), 0b000110u);
+  masks_[Index(kMiddle, kMiddle)] = 0;
+  EXPECT_EQ(asked(), 0b100000u);
 }
 
 TEST_F(CollectCandidatesTest, LooksIntoTheRegionsOfSmallestCostOnly) {

@@ -82,23 +82,6 @@ TEST_F(CpuBackendTest, OneAndTwoThreadsGiveTheSameBytes) {
   EXPECT_GT(one.num_evaluations, 0u);
 }
 
-TEST_F(CpuBackendTest, ConsistencyIsLookedAtWhereTheFilterLooks) {
-  const Result all = RunAll(2);
-  const auto backend = MakeCpuBackend("auto", 2);
-  backend->SetViews(views_, MethodParams());
-  const FilterParams every_third = {0.1f, 0.05f, 1.0f, 2, 3};
-  const std::vector<uint32_t> some =
-      backend->ConsistentViews(all.map, every_third, true, control_);
-  ASSERT_EQ(some.size(), all.consistent.size());
-  for (int row = 0; row < kHeight; ++row) {
-    for (int col = 0; col < kWidth; ++col) {
-      const int at = row * kWidth + col;
-      const bool looks = row % 3 == 0 && col % 3 == 0;
-      ASSERT_EQ(some[at], looks ? all.consistent[at] : 0u);
-    }
-  }
-}
-
 TEST_F(CpuBackendTest, ForgottenViewsAreHeldNoLonger) {
   const auto backend = MakeCpuBackend("auto", 1);
   const auto& depth = views_.srcs[0].inverse_depth;
@@ -125,6 +108,45 @@ TEST_F(CpuBackendTest, AStoredStartComputesNoCosts) {
   EXPECT_EQ(backend->num_cost_evaluations(), num_before);
   EXPECT_TRUE(SameBytes(before.costs, map.costs));
   EXPECT_TRUE(SameBytes(before.planes, map.planes));
+}
+
+// The other colour follows those that were visited, or stays as it was.
+TEST_F(CpuBackendTest, AHalfPassVisitsOneColour) {
+  const auto backend = MakeCpuBackend("auto", 2);
+  backend->SetViews(views_, MethodParams());
+  HypothesisMap map(kWidth, kHeight);
+  backend->Run(kBasic, pattern_, &map, control_);
+  const HypothesisMap before = map;
+  HypothesisMap full = map;
+  Pass pass = kGeometric;
+  pass.median = false;
+  uint64_t num_costs = backend->num_cost_evaluations();
+  backend->Run(pass, pattern_, &full, control_);
+  const uint64_t num_of_full = backend->num_cost_evaluations() - num_costs;
+  num_costs = backend->num_cost_evaluations();
+  pass.half = true;
+  backend->Run(pass, pattern_, &map, control_);
+  EXPECT_LT(backend->num_cost_evaluations() - num_costs, 0.8 * num_of_full);
+  const auto same_plane = [&](const Plane& a, const Plane& b) {
+    return std::memcmp(&a, &b, sizeof(Plane)) == 0;
+  };
+  int num_following = 0, num_moved = 0;
+  for (int row = 1; row + 1 < kHeight; ++row) {
+    for (int col = 1; col + 1 < kWidth; ++col) {
+      const int at = row * kWidth + col;
+      if ((col + row) % 2 == 1) {
+        num_moved += !same_plane(map.planes[at], before.planes[at]);
+        continue;
+      }
+      bool follows = false;
+      for (const int beside : {at - kWidth, at - 1, at + 1, at + kWidth})
+        follows |= same_plane(map.planes[at], map.planes[beside]);
+      num_following += follows;
+      EXPECT_TRUE(follows || same_plane(map.planes[at], before.planes[at]));
+    }
+  }
+  EXPECT_GT(num_following, 600);
+  EXPECT_GT(num_moved, 300);
 }
 
 TEST_F(CpuBackendTest, AnotherSeedGivesAnotherMap) {

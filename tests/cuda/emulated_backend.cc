@@ -177,6 +177,11 @@ void EmulatedBackend::RunSweep(const Sweep& sweep,
         num_evaluations_ +=
             RunWith<SweepKind::kConsistency>(options_.cost, launch);
         break;
+      case SweepKind::kFollow:
+        ForEachPixel(launch.band, [&](const Pixel& pixel) {
+          TakeNeighbour(state, pixel.col, pixel.row);
+        });
+        break;
       case SweepKind::kMedian:
         ForEachPixel(launch.band, [&](const Pixel& pixel) {
           MedianFilterPixel(

@@ -20,11 +20,17 @@ constexpr int kHeight = 43;
 const Pass kBasic = {PassKind::kBasic, StartFrom::kRandom, 3, 0};
 const Pass kPrior = {PassKind::kPrior, StartFrom::kPrior, 2, 1};
 const Pass kGeometric = {PassKind::kGeometric, StartFrom::kCurrent, 2, 2};
+Pass HalfPass() {
+  Pass pass = {PassKind::kGeometric, StartFrom::kCurrent, 1, 4};
+  pass.half = true;
+  return pass;
+}
+
 const Pass kNoMedian = {PassKind::kBasic, StartFrom::kCurrent, 1, 3, 0, false};
 const FilterParams kFilter = {0.1f, 0.05f, 1.0f, 2};
 
 struct Result {
-  HypothesisMap basic, prior, geometric, last;
+  HypothesisMap basic, prior, geometric, half, last;
   std::vector<uint32_t> photometric_filter, geometric_filter;
   uint64_t num_evaluations = 0;
 };
@@ -91,6 +97,8 @@ class EmulationTest : public testing::Test {
     result.prior = map;
     backend->Run(kGeometric, pattern, &map, control_);
     result.geometric = map;
+    backend->Run(HalfPass(), pattern, &map, control_);
+    result.half = map;
     backend->Run(kNoMedian, pattern, &map, control_);
     result.last = map;
     result.photometric_filter =
@@ -105,6 +113,7 @@ class EmulationTest : public testing::Test {
     EXPECT_TRUE(SameMaps(a.basic, b.basic));
     EXPECT_TRUE(SameMaps(a.prior, b.prior));
     EXPECT_TRUE(SameMaps(a.geometric, b.geometric));
+    EXPECT_TRUE(SameMaps(a.half, b.half));
     EXPECT_TRUE(SameMaps(a.last, b.last));
     EXPECT_EQ(a.photometric_filter, b.photometric_filter);
     EXPECT_EQ(a.geometric_filter, b.geometric_filter);

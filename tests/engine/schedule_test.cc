@@ -18,6 +18,7 @@ ScheduleOptions Options(const std::string& method, int num_levels = 3) {
   options.num_geom_iterations = 2;
   options.num_geom_passes = 2;
   options.num_levels = num_levels;
+  options.half_search = HalfSearch::kOff;
   return options;
 }
 
@@ -191,7 +192,52 @@ TEST(Schedule, HpmFastTakesFewerPassesAndIterations) {
     return MakeSchedule(Options(method)).stages.back().passes.back();
   };
   EXPECT_LT(last("hpm_fast").max_candidates, last("hpm").max_candidates);
-  EXPECT_LT(last("hpm_fast").max_drawn_views, last("hpm").max_drawn_views);
+  EXPECT_TRUE(last("hpm_fast").half);
+}
+
+TEST(Schedule, OnlyTheLastGeometricPassOfALevelVisitsAllPixels) {
+  const Schedule schedule = MakeSchedule(Options("hpm"));
+  for (size_t s = 0; s < schedule.stages.size(); ++s) {
+    const StageSpec& stage = schedule.stages[s];
+    if (!stage.geometric) continue;
+    const bool last = s + 1 == schedule.stages.size() ||
+                      schedule.stages[s + 1].level < stage.level;
+    EXPECT_EQ(stage.passes.back().half, !last) << s;
+  }
+  for (const StageSpec& stage : MakeSchedule(Options("nesp")).stages) {
+    for (const Pass& pass : stage.passes) EXPECT_FALSE(pass.half);
+  }
+}
+
+TEST(Schedule, AHalfSearchTakesTheIterationsOfTheCoarsestLevel) {
+  ScheduleOptions options = Options("hpm", 2);
+  options.half_search = HalfSearch::kOn;
+  const std::vector<StageSpec> stages = MakeSchedule(options).stages;
+  EXPECT_EQ(stages.size(), 1 + MakeSchedule(Options("hpm", 2)).stages.size());
+  EXPECT_EQ(stages[0].level, 2);
+  ASSERT_EQ(stages[0].passes.size(), 1u);
+  EXPECT_EQ(stages[0].passes[0].num_iterations, options.num_iterations + 1);
+  EXPECT_EQ(stages[1].level, 1);
+  EXPECT_TRUE(stages[1].from_coarser);
+  EXPECT_TRUE(stages[1].passes.empty());
+  EXPECT_TRUE(stages[2].geometric);
+}
+
+TEST(Schedule, HalfSearchIsForOneLevelAndForHpmFast) {
+  const auto first_level = [](const std::string& method, int num_levels) {
+    ScheduleOptions options = Options(method, num_levels);
+    options.half_search = HalfSearch::kAuto;
+    return MakeSchedule(options).stages[0].level;
+  };
+  EXPECT_EQ(first_level("hpm", 1), 1);
+  EXPECT_EQ(first_level("hpm", 3), 2);
+  EXPECT_EQ(first_level("hpm_fast", 1), 1);
+  EXPECT_EQ(first_level("hpm_fast", 3), 3);
+  EXPECT_EQ(first_level("nesp", 1), 0);
+  ScheduleOptions photometric = Options("hpm", 1);
+  photometric.half_search = HalfSearch::kOn;
+  photometric.num_geom_passes = 0;
+  EXPECT_EQ(MakeSchedule(photometric).stages[0].level, 0);
 }
 
 TEST(Schedule, NespHasNoPriors) {

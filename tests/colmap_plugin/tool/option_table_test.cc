@@ -131,6 +131,7 @@ TEST(OptionTableTest, EveryMemberOfHpmOptionsIsAnOption) {
                num_geom_passes,
                num_fine_iterations,
                num_fine_geom_passes,
+               half_search,
                max_views,
                prior,
                weak_gradient,
@@ -144,7 +145,7 @@ TEST(OptionTableTest, EveryMemberOfHpmOptionsIsAnOption) {
   (void)num_geom_passes, (void)geom_weight, (void)geom_max_error,
       (void)num_levels;
   (void)previews, (void)overwrite;
-  (void)num_fine_iterations, (void)num_fine_geom_passes;
+  (void)num_fine_iterations, (void)num_fine_geom_passes, (void)half_search;
   (void)quality, (void)prior, (void)max_views, (void)weak_gradient;
   for (const char* name : {"method",
                            "quality",
@@ -159,6 +160,7 @@ TEST(OptionTableTest, EveryMemberOfHpmOptionsIsAnOption) {
                            "num_geom_passes",
                            "num_fine_iterations",
                            "num_fine_geom_passes",
+                           "half_search",
                            "geom_weight",
                            "geom_max_error",
                            "num_levels",
@@ -262,6 +264,7 @@ const std::vector<Values>& ValueTable() {
       {"Hpm.num_geom_iterations", {"1", "2"}, {"0"}, ">= 1"},
       {"Hpm.num_geom_passes", {"1", "2"}, {"0"}, ">= 1"},
       {"Hpm.num_fine_iterations", {"0", "2"}, {"-1"}, ">= 0"},
+      {"Hpm.half_search", {"-1", "0", "1"}, {"2", "-2"}, "-1 to 1"},
       {"Hpm.num_fine_geom_passes", {"1", "2"}, {"0"}, ">= 1"},
       {"Hpm.geom_weight", {"0", "0.1"}, {"-0.1", "nan"}, ">= 0"},
       {"Hpm.quality",

@@ -1,0 +1,123 @@
+#include "src/engine/mine_regions.h"
+
+#include "tests/cpu/scene_views.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace hpm {
+namespace {
+
+constexpr int kWidth = 96;
+constexpr int kHeight = 72;
+
+// A plane seen by four views, without any texture: one region.
+class MineRegionsTest : public testing::Test {
+ protected:
+  MineRegionsTest() : map_(kWidth, kHeight) {
+    SceneOptions options;
+    options.num_views = 4;
+    options.width = kWidth;
+    options.height = kHeight;
+    rendered_ = RenderViews(MakeScene("tilted_plane", options), 1);
+    views_ = AsViewSet(rendered_);
+    views_.ref.image = std::make_shared<const GrayImage>(GrayImage{
+        kWidth, kHeight, std::vector<uint8_t>(kWidth * kHeight, 128)});
+    for (size_t j = 0; j < views_.srcs.size(); ++j) SetDepth(j, 1);
+    SetMap(1);
+  }
+
+  // The truth times `scale` in source view j, or in the reference.
+  void SetDepth(size_t j, float scale) {
+    std::vector<float> inverse;
+    for (const float z : rendered_[j + 1].truth.depth)
+      inverse.push_back(1 / (scale * z));
+    views_.srcs[j].inverse_depth =
+        std::make_shared<const InverseDepthMap>(InverseDepthMap::Of(inverse));
+  }
+  void SetMap(float scale) {
+    for (int row = 0; row < kHeight; ++row) {
+      for (int col = 0; col < kWidth; ++col) {
+        const size_t at = static_cast<size_t>(row) * kWidth + col;
+        map_.planes[at] = PlaneFromDepth(views_.ref.camera,
+                                         static_cast<float>(col),
+                                         static_cast<float>(row),
+                                         scale * TrueDepth(at),
+                                         rendered_[0].truth.normals[at]);
+      }
+    }
+  }
+
+  float TrueDepth(size_t at) const { return rendered_[0].truth.depth[at]; }
+  std::vector<Plane> Mine() { return MineRegions(views_, params_, map_, 7); }
+
+  // Mean depth of the priors over the truth.
+  double MeanScale(const std::vector<Plane>& priors) const {
+    double sum = 0;
+    for (int row = 0; row < kHeight; ++row) {
+      for (int col = 0; col < kWidth; ++col) {
+        const size_t at = static_cast<size_t>(row) * kWidth + col;
+        EXPECT_GT(priors[at].distance, 0);
+        sum += DepthAt(views_.ref.camera,
+                       priors[at],
+                       static_cast<float>(col),
+                       static_cast<float>(row)) /
+               TrueDepth(at);
+      }
+    }
+    return sum / (kWidth * kHeight);
+  }
+
+  std::vector<RenderedView> rendered_;
+  ViewSet views_;
+  HypothesisMap map_;
+  MethodParams params_;
+};
+
+TEST_F(MineRegionsTest, APlaneOnWhichAllAgreeIsFound) {
+  const std::vector<Plane> priors = Mine();
+  ASSERT_EQ(priors.size(), map_.planes.size());
+  for (int row = 0; row < kHeight; ++row) {
+    for (int col = 0; col < kWidth; ++col) {
+      const size_t at = static_cast<size_t>(row) * kWidth + col;
+      EXPECT_NEAR(DepthAt(views_.ref.camera,
+                          priors[at],
+                          static_cast<float>(col),
+                          static_cast<float>(row)),
+                  TrueDepth(at),
+                  1e-3f * TrueDepth(at));
+    }
+  }
+}
+
+// The error of the reference alone shrinks to a quarter: three views correct
+// it.
+TEST_F(MineRegionsTest, AgreeingViewsAreAveraged) {
+  constexpr float kSlip = 0.004f;
+  SetMap(1 + kSlip);
+  EXPECT_NEAR(MeanScale(Mine()), 1 + kSlip / 4, 0.1 * kSlip);
+}
+
+TEST_F(MineRegionsTest, ViewsThatDisagreeHaveNoSay) {
+  SetDepth(0, 1.2f);
+  params_.region_min_consistent = 2;
+  EXPECT_NEAR(MeanScale(Mine()), 1, 1e-3);
+  params_.region_min_consistent = 3;
+  for (const Plane& prior : Mine()) EXPECT_EQ(prior.distance, 0);
+}
+
+TEST_F(MineRegionsTest, WithoutDepthMapsThereIsNothingToMine) {
+  for (View& src : views_.srcs) src.inverse_depth = nullptr;
+  EXPECT_TRUE(Mine().empty());
+}
+
+TEST_F(MineRegionsTest, PixelsWithoutAHypothesisAreLeftOut) {
+  for (size_t i = 0; i < map_.planes.size(); ++i) {
+    if (i % 3 != 0) map_.planes[i].distance = 0;
+  }
+  EXPECT_NEAR(MeanScale(Mine()), 1, 1e-3);
+}
+
+}  // namespace
+}  // namespace hpm
