@@ -54,7 +54,7 @@ struct HpmOptions {
   int num_fine_iterations = 0;  // the same at levels finer than the coarsest
   int num_fine_geom_passes = 1;
   int half_search = -1;  // of the coarsest level: 0, 1 or -1, by the schedule
-  int max_views = 4;              // source views that judge a pixel in a visit
+  int max_views = 4;     // source views that judge a pixel in a visit
   std::string prior = "regions";  // of hpm: regions, or the paper's triangles
   double weak_gradient = 2;       // grey levels per pixel
   double geom_weight = 0.1;       // lambda of the geometric term

@@ -100,7 +100,7 @@ std::string OwnFingerprint(const Workspace& workspace,
     hash.AddInt(static_cast<int>(pass.kind)).AddInt(pass.num_iterations);
     hash.AddInt(pass.id).AddInt(pass.level);
     hash.AddInt(pass.max_candidates).AddInt(pass.max_drawn_views);
-    hash.AddInt(pass.half);
+    hash.AddInt(pass.half).AddInt(pass.few_views);
   }
   if (stage.spec.geometric) {
     hash.AddDouble(params.geom_weight).AddDouble(params.geom_max_error);

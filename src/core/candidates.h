@@ -42,10 +42,10 @@ HPM_HD uint32_t MostVoted(uint32_t views,
   return views;
 }
 
-// Views worth asking, with the votes of the neighbours. In a search of the
-// whole range those that the pixel itself or two of its neighbours trusted, and
-// one more in turn, so that a view can come back; near a surface the most voted
-// of those that the pixel has just trusted. One at least.
+// Views worth asking, with the votes of the neighbours: those that the pixel
+// itself or two of its neighbours trusted, and one more in turn, so that a view
+// can come back; with `few_views` the most voted of those that the pixel has
+// just trusted. One at least.
 HPM_HD void ChooseViews(const VisitParams& params,
                         const SamplingPattern& pattern,
                         const PixelState& state,
@@ -66,14 +66,14 @@ HPM_HD void ChooseViews(const VisitParams& params,
     if (c < 0 || r < 0 || c >= state.width || r >= state.height) continue;
     const uint32_t mask = state.masks[r * state.width + c];
     for (int j = 0; j < params.num_views; ++j) votes[j] += mask >> j & 1;
-    if (!params.search_near) trusted |= once & mask;
+    if (!params.few_views) trusted |= once & mask;
     once |= mask;
     ++num_voters;
   }
   int turn = static_cast<int>(draw * static_cast<float>(params.num_views));
   if (turn == params.num_views) turn = 0;  // rounding
-  if (!params.search_near || trusted == 0) trusted |= 1u << turn;
-  if (params.search_near) {
+  if (!params.few_views || trusted == 0) trusted |= 1u << turn;
+  if (params.few_views) {
     trusted = MostVoted(
         trusted, votes, params.num_views, params.max_drawn_views, turn);
   }

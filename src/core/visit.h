@@ -40,9 +40,9 @@ struct VisitParams {
   PriorTerm prior_term;
   int max_drawn_views;  // see KeepLargest()
   int max_candidates;   // regions that a visit looks into
-  // The hypotheses are those of a surface, their views have just been judged:
-  // neither the whole depth range nor other views are searched.
+  // Refinement without hypotheses from the whole depth range.
   bool search_near;
+  bool few_views;  // see ChooseViews()
 };
 
 // k of the best-k mean at initialisation (paper section 3).

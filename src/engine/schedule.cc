@@ -100,7 +100,10 @@ class StageList {
                  next_id_++};
     pass.regions = regions;
     pass.max_candidates = fast_ ? 3 : 4;
-    pass.max_drawn_views = 2;
+    if (regions != RegionPriors::kNone) {
+      pass.max_drawn_views = 2;
+      pass.few_views = true;
+    }
     pass.half = half || fast_;
     stage.passes.push_back(pass);
     stages_->push_back(stage);

@@ -42,6 +42,7 @@ VisitParams ForPass(VisitParams visit,
                     const Pass& pass) {
   visit.geometric = pass.kind == PassKind::kGeometric;
   visit.search_near = visit.geometric;
+  visit.few_views = pass.few_views;
   visit.max_candidates = pass.max_candidates;
   visit.max_drawn_views = std::min(visit.max_drawn_views, pass.max_drawn_views);
   if (pass.regions == RegionPriors::kStrong)

@@ -84,7 +84,7 @@ class Resources(CliTest):
         disk = workspace.parent / "disk"
         disk.mkdir()
         mounted = subprocess.run(
-            ["mount", "-t", "tmpfs", "-o", "size=1m", "none", disk], stderr=subprocess.PIPE
+            ["mount", "-t", "tmpfs", "-o", "size=1300k", "none", disk], stderr=subprocess.PIPE
         )
         if mounted.returncode != 0:
             self.skipTest("a tmpfs cannot be mounted here")
@@ -93,12 +93,12 @@ class Resources(CliTest):
         shutil.move(stereo, disk / "stereo")
         stereo.symlink_to(disk / "stereo")
         filler = disk / "filler"
-        filler.write_bytes(bytes(900_000))
+        filler.write_bytes(bytes(1_150_000))
         result = self.run_tool(workspace, *FAST)
         self.assert_exit(result, 5, str(stereo))
         self.assert_no_partial_files(workspace)
         filler.unlink()
-        # 4 images, 16 bytes a pixel, two stages: 0.9 MB fit now.
+        # 4 images, 16 bytes a pixel, two stages and a quarter: 1.0 MB fit now.
         self.assert_rerun_completes(workspace)
 
     def run_as_nobody(self, workspace):

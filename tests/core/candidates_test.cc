@@ -216,9 +216,9 @@ TEST_F(CollectCandidatesTest, MatrixHoldsTheCostOfEachCandidateInEachView) {
   }
 }
 
-// In a search the views that two trust and one in turn; near a surface the most
-// voted of the pixel's own.
-TEST_F(CollectCandidatesTest, NearASurfaceOnlyViewsJustTrustedAreAsked) {
+// The views that two trust and one in turn, or the most voted of the pixel's
+// own.
+TEST_F(CollectCandidatesTest, AsksTheViewsThatAreTrusted) {
   params_.num_views = 6;
   params_.max_drawn_views = 2;
   masks_[Index(kMiddle, kMiddle)] = 0b000111;
@@ -235,7 +235,7 @@ TEST_F(CollectCandidatesTest, NearASurfaceOnlyViewsJustTrustedAreAsked) {
     return views;
   };
   EXPECT_EQ(asked(), 0b101111u);
-  params_.search_near = true;
+  params_.few_views = true;
   // Votes 1, 1 and 2; from the turn on the first of fewest goes.
   EXPECT_EQ(asked(), 0b000110u);
   masks_[Index(kMiddle, kMiddle)] = 0;

@@ -23,6 +23,8 @@ const Pass kGeometric = {PassKind::kGeometric, StartFrom::kCurrent, 2, 2};
 Pass HalfPass() {
   Pass pass = {PassKind::kGeometric, StartFrom::kCurrent, 1, 4};
   pass.half = true;
+  pass.few_views = true;
+  pass.max_drawn_views = 2;
   return pass;
 }
 

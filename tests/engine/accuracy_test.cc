@@ -84,7 +84,7 @@ INSTANTIATE_TEST_SUITE_P(Accuracy,
 
 TEST_P(SmallScene, IsAccurate) {
   ExpectAccurate(
-      GetParam().name, "tilted_plane", Size(48, 36, 5), Method("nesp", 2));
+      GetParam().name, "tilted_plane", Size(48, 36, 5), Method("nesp", 3));
 }
 
 }  // namespace
