@@ -108,8 +108,8 @@ std::vector<OptionSpec> MakeTable() {
           "hpm: planar priors; hpm_fast: with fewer passes; nesp: without priors; "
           "the others are rows of the paper's ablation (docs/ablation.md)"),
       Hpm(kCommon, "quality", &H::quality, OneOf(QualityNames()),
-          "Effort: sets Hpm.num_iterations, num_geom_passes and num_fine_iterations where they "
-          "are not given (docs/benchmarks.md)"),
+          "Effort: sets Hpm.num_iterations, num_geom_passes, num_fine_iterations and half_search "
+          "where they are not given (docs/benchmarks.md)"),
       Hpm(kCommon, "overwrite", &H::overwrite, Anything(),
           "Compute maps again that are complete and made with the same options"),
       Hpm(kCommon, "previews", &H::previews, Anything(),

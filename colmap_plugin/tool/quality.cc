@@ -6,21 +6,23 @@ namespace {
 Quality MakeQuality(const std::string& name,
                     int num_iterations,
                     int num_geom_passes,
-                    int num_fine_iterations) {
+                    int num_fine_iterations,
+                    int half_search) {
   return {name,
           {{"Hpm.num_iterations", std::to_string(num_iterations)},
            {"Hpm.num_geom_passes", std::to_string(num_geom_passes)},
-           {"Hpm.num_fine_iterations", std::to_string(num_fine_iterations)}}};
+           {"Hpm.num_fine_iterations", std::to_string(num_fine_iterations)},
+           {"Hpm.half_search", std::to_string(half_search)}}};
 }
 
 }  // namespace
 
 const std::vector<Quality>& Qualities() {
   static const std::vector<Quality> qualities = {
-      MakeQuality("low", 1, 2, 0),
-      MakeQuality("medium", 2, 2, 0),
-      MakeQuality("high", 2, 3, 0),
-      MakeQuality("extreme", 3, 4, 1)};
+      MakeQuality("low", 1, 2, 0, -1),
+      MakeQuality("medium", 2, 2, 0, -1),
+      MakeQuality("high", 2, 3, 0, -1),
+      MakeQuality("extreme", 3, 4, 1, 0)};
   return qualities;
 }
 

@@ -200,6 +200,7 @@ TEST(ParseOptionsTest, QualitySetsWhatIsNotGiven) {
   EXPECT_EQ(high.num_iterations, defaults.num_iterations);
   EXPECT_EQ(high.num_geom_passes, defaults.num_geom_passes);
   EXPECT_EQ(high.num_fine_iterations, defaults.num_fine_iterations);
+  EXPECT_EQ(high.half_search, defaults.half_search);
   const HpmOptions low =
       hpm({"--Hpm.quality", "low", "--Hpm.num_geom_passes", "5"});
   EXPECT_LT(low.num_iterations, defaults.num_iterations);
