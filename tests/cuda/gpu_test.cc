@@ -22,6 +22,14 @@ const Pass kBasic = {PassKind::kBasic, StartFrom::kRandom, 3, 0};
 const Pass kPrior = {PassKind::kPrior, StartFrom::kPrior, 2, 1};
 const Pass kGeometric = {PassKind::kGeometric, StartFrom::kCurrent, 2, 2};
 
+Pass HalfPass() {
+  Pass pass = {PassKind::kGeometric, StartFrom::kCurrent, 1, 4};
+  pass.half = true;
+  pass.few_views = true;
+  pass.max_drawn_views = 2;
+  return pass;
+}
+
 struct Variant {
   const char* name;
   ImageFormat format;
@@ -70,7 +78,7 @@ class GpuTest : public testing::Test {
   }
 
   struct Result {
-    HypothesisMap basic, prior, geometric;
+    HypothesisMap basic, prior, geometric, half;
     std::vector<uint32_t> consistent;
     uint64_t num_evaluations = 0;
   };
@@ -92,6 +100,8 @@ class GpuTest : public testing::Test {
     result.prior = map;
     backend->Run(kGeometric, pattern_, &map, continued);
     result.geometric = map;
+    backend->Run(HalfPass(), pattern_, &map, continued);
+    result.half = map;
     result.consistent =
         backend->ConsistentViews(map, {0.1f, 0.05f, 1.0f, 2}, true, control_);
     result.num_evaluations = backend->num_cost_evaluations();
@@ -109,6 +119,7 @@ class GpuTest : public testing::Test {
     EXPECT_TRUE(SameBytes(a.geometric.planes, b.geometric.planes));
     EXPECT_TRUE(SameBytes(a.geometric.costs, b.geometric.costs));
     EXPECT_TRUE(SameBytes(a.geometric.masks, b.geometric.masks));
+    EXPECT_TRUE(SameBytes(a.half.planes, b.half.planes));
     EXPECT_EQ(a.consistent, b.consistent);
     EXPECT_EQ(a.num_evaluations, b.num_evaluations);
   }
@@ -209,13 +220,16 @@ TEST_P(EveryVariant, MapsAreThoseOfTheCpuButForTies) {
     const double basic = DifferingShare(a.basic, b.basic, views.ref.camera);
     const double geometric =
         DifferingShare(a.geometric, b.geometric, views.ref.camera);
-    std::printf("%s %s: basic %.4f, geometric %.4f\n",
+    const double half = DifferingShare(a.half, b.half, views.ref.camera);
+    std::printf("%s %s: basic %.4f, geometric %.4f, half %.4f\n",
                 GetParam().name,
                 scene,
                 basic,
-                geometric);
+                geometric,
+                half);
     EXPECT_LT(basic, 0.1) << scene;
     EXPECT_LT(geometric, 0.08) << scene;
+    EXPECT_LT(half, 0.08) << scene;
   }
 }
 
