@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <tbb/parallel_for.h>
+
 namespace hpm {
 namespace {
 
@@ -71,14 +73,16 @@ class DepthViews {
   std::vector<DepthView> views_;
 };
 
-// Pixels of a lattice that at least `needed` views agree on.
+// Pixels of a lattice that at least `needed` views agree on, row by row.
 std::vector<ReliablePoint> ReliablePoints(const DepthViews& views,
                                           float max_error,
                                           int needed,
                                           const HypothesisMap& map) {
   const int step = LatticeStep(map);
-  std::vector<ReliablePoint> points;
-  for (int row = 0; row < map.height; row += step) {
+  const int num_rows = (map.height + step - 1) / step;
+  std::vector<std::vector<ReliablePoint>> of_row(num_rows);
+  tbb::parallel_for(0, num_rows, [&](int i) {
+    const int row = i * step;
     for (int col = 0; col < map.width; col += step) {
       const Plane& plane =
           map.planes[static_cast<size_t>(row) * map.width + col];
@@ -89,9 +93,12 @@ std::vector<ReliablePoint> ReliablePoints(const DepthViews& views,
                                        static_cast<float>(row),
                                        max_error,
                                        &inverse_depth);
-      if (count >= needed) points.push_back({col, row, inverse_depth});
+      if (count >= needed) of_row[i].push_back({col, row, inverse_depth});
     }
-  }
+  });
+  std::vector<ReliablePoint> points;
+  for (const auto& row : of_row)
+    points.insert(points.end(), row.begin(), row.end());
   return points;
 }
 
