@@ -13,7 +13,7 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SOURCES = ("cuda/sweep_texture.cu", "cuda/sweep_quad.cu", "cuda/image_kernels.cu")
-KINDS = {"0": "initialise", "1": "update", "2": "median", "3": "filter"}
+KINDS = {"0": "initialise", "1": "update", "2": "follow", "3": "median", "4": "filter"}
 
 
 def short_name(name):
