@@ -20,7 +20,7 @@ class BandPlanner {
 
  private:
   double target_seconds_;
-  std::array<double, 4> rows_;  // per kind
+  std::array<double, kNumSweepKinds> rows_;  // per kind
 };
 
 }  // namespace hpm

@@ -15,7 +15,7 @@ constexpr uint64_t kOverheadBytes = 48ull << 20;
 
 // The driver keeps a stack for every thread that can be resident. Bytes as
 // ptxas tells for the update kernels (docs/benchmarks.md), rounded up.
-constexpr uint64_t kStackBytes = 3328;
+constexpr uint64_t kStackBytes = 3584;
 constexpr uint64_t kThreadsPerProcessor = 2048;
 
 // Textures are stored in blocks; their rows and columns are rounded up.

@@ -15,6 +15,7 @@ namespace hpm {
 
 // A half-sweep of one kind, as data.
 enum class SweepKind { kInitialize, kUpdate, kFollow, kMedian, kConsistency };
+constexpr int kNumSweepKinds = static_cast<int>(SweepKind::kConsistency) + 1;
 
 struct Sweep {
   SweepKind kind;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 namespace hpm {
@@ -81,21 +82,24 @@ std::vector<ReliablePoint> ReliablePoints(const DepthViews& views,
   const int step = LatticeStep(map);
   const int num_rows = (map.height + step - 1) / step;
   std::vector<std::vector<ReliablePoint>> of_row(num_rows);
-  tbb::parallel_for(0, num_rows, [&](int i) {
-    const int row = i * step;
-    for (int col = 0; col < map.width; col += step) {
-      const Plane& plane =
-          map.planes[static_cast<size_t>(row) * map.width + col];
-      if (!(plane.distance > 0)) continue;
-      float inverse_depth;
-      const int count = views.Agreeing(plane,
-                                       static_cast<float>(col),
-                                       static_cast<float>(row),
-                                       max_error,
-                                       &inverse_depth);
-      if (count >= needed) of_row[i].push_back({col, row, inverse_depth});
-    }
-  });
+  tbb::parallel_for(
+      tbb::blocked_range<int>(0, num_rows), [&](const auto& rows) {
+        for (int i = rows.begin(); i < rows.end(); ++i) {
+          const int row = i * step;
+          for (int col = 0; col < map.width; col += step) {
+            const Plane& plane =
+                map.planes[static_cast<size_t>(row) * map.width + col];
+            if (!(plane.distance > 0)) continue;
+            float inverse_depth;
+            const int count = views.Agreeing(plane,
+                                             static_cast<float>(col),
+                                             static_cast<float>(row),
+                                             max_error,
+                                             &inverse_depth);
+            if (count >= needed) of_row[i].push_back({col, row, inverse_depth});
+          }
+        }
+      });
   std::vector<ReliablePoint> points;
   for (const auto& row : of_row)
     points.insert(points.end(), row.begin(), row.end());

@@ -51,9 +51,14 @@ TEST(BandPlannerTest, NoLaunchOfASteadyCardExceedsTheTarget) {
 }
 
 TEST(BandPlannerTest, KindsAreApart) {
-  BandPlanner planner(0.03);
-  planner.Report(SweepKind::kMedian, 64, 1e-6);
-  EXPECT_EQ(planner.NextRows(SweepKind::kUpdate, 10000, 8), 64);
+  for (int reported = 0; reported < kNumSweepKinds; ++reported) {
+    BandPlanner planner(0.03);
+    planner.Report(static_cast<SweepKind>(reported), 64, 1e-6);
+    for (int kind = 0; kind < kNumSweepKinds; ++kind) {
+      EXPECT_EQ(planner.NextRows(static_cast<SweepKind>(kind), 10000, 8),
+                kind == reported ? 256 : 64);
+    }
+  }
 }
 
 }  // namespace
