@@ -41,7 +41,6 @@ HPM_HD void VisitPixel(const DeviceProblem& problem,
                 "TakeNeighbour and MedianFilterPixel need no cost");
   if constexpr (kKind == SweepKind::kConsistency) {
     const size_t at = static_cast<size_t>(row) * state.width + col;
-    consistent[at] = 0;
     consistent[at] = ConsistentViews(problem.params,
                                      sweep.filter,
                                      problem.src_centers,

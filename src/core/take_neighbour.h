@@ -5,8 +5,9 @@
 
 namespace hpm {
 
-// What a matching cost may rise, for a plane refined at this size in place of
-// one that came up from a coarser level.
+// What a cost may rise, for a plane refined at this size in place of one that
+// came up from a coarser level. Its own cost is photometric, those beside it
+// have the geometric term: where the views disagree the pixel keeps its own.
 constexpr float kRefinedMayCostMore = 0.1f;
 
 // Takes the hypothesis of the direct neighbour, of the other colour, whose cost

@@ -1,5 +1,5 @@
 // One visit of one pixel: collect candidates, choose views, decide, refine
-// (specification appendix A). The only function that changes a hypothesis.
+// (specification appendix A).
 #pragma once
 
 #include "src/core/candidates.h"
@@ -183,6 +183,7 @@ HPM_HD void UpdatePixel(const VisitParams& params,
                      best.plane.normal);
 
   // Candidates: their photometric costs are known already.
+  static_assert(kNumRefined <= kNumRegions, "they share the arrays");
   Plane planes[kNumRegions];
   float costs[kNumRegions];
   int num_planes = 0;

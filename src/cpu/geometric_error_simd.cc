@@ -5,8 +5,11 @@
 
 #include "src/cpu/simd_targets.h"
 
+#include <iterator>
+
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
+#include <string.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace hpm {
@@ -24,7 +27,7 @@ struct Vec3 {
 };
 
 // What each lane's view contributes, the same for all planes.
-struct Lanes {
+struct LaneViews {
   // Row by row M, then v, of ViewWarp.
   alignas(16) float to_src[12][kMaxLanes];
   alignas(16) float to_ref[12][kMaxLanes];
@@ -37,7 +40,7 @@ struct Lanes {
 HWY_INLINE void FillLane(const DepthView& view,
                          float max_error,
                          int lane,
-                         Lanes* lanes) {
+                         LaneViews* lanes) {
   for (int i = 0; i < 9; ++i) {
     lanes->to_src[i][lane] = view.to_src.M.m[i];
     lanes->to_ref[i][lane] = view.to_ref.M.m[i];
@@ -59,7 +62,7 @@ HWY_INLINE void FillLane(const DepthView& view,
 
 // M (u, v, 1)
 HWY_INLINE Vec3 Times(DF df, const float (&M)[12][kMaxLanes], VF u, VF v) {
-  const auto row = [&](int i) {
+  const auto row = [&](int i) HWY_ATTR {
     return hn::MulAdd(
         hn::Load(df, M[i]),
         u,
@@ -99,7 +102,7 @@ HWY_INLINE void ReadTaps(
 }
 
 // InterpolateInverseDepth() at (u, v), which lies in the lane's image.
-HWY_INLINE VF InverseDepthAt(DF df, const Lanes& lanes, VF u, VF v) {
+HWY_INLINE VF InverseDepthAt(DF df, const LaneViews& lanes, VF u, VF v) {
   const DI di;
   const VF zero = hn::Zero(df);
   const VF one = hn::Set(df, 1.0f);
@@ -119,18 +122,18 @@ HWY_INLINE VF InverseDepthAt(DF df, const Lanes& lanes, VF u, VF v) {
              static_cast<int>(lane),
              &taps);
   }
-  const auto tap = [&](const int32_t* bytes) {
+  const auto tap = [&](const int32_t* bytes) HWY_ATTR {
     return hn::ConvertTo(df,
                          hn::And(hn::Load(di, bytes), hn::Set(di, 0xffffff)));
   };
   const VF a = tap(taps.a), b = tap(taps.b), c = tap(taps.c), d = tap(taps.d);
   const VF bound = hn::Mul(hn::Set(df, kSameSurface), a);
-  const auto is_near = [&](VF other) {
+  const auto is_near = [&](VF other) HWY_ATTR {
     return hn::Le(hn::Abs(hn::Sub(other, a)), bound);
   };
   const auto same = hn::And(hn::And(hn::Gt(a, zero), is_near(b)),
                             hn::And(is_near(c), is_near(d)));
-  const auto weight = [&](VF f) {
+  const auto weight = [&](VF f) HWY_ATTR {
     return hn::IfThenElse(same, f, hn::IfThenZeroElse(hn::Lt(f, half), one));
   };
   const VF wu = weight(hn::Sub(u, hn::ConvertTo(df, col)));
@@ -144,7 +147,7 @@ HWY_INLINE VF InverseDepthAt(DF df, const Lanes& lanes, VF u, VF v) {
 // Reproject() and ReprojectionError() of one plane; origin: to_src.M (col, row,
 // 1); m_here: the plane's -1/z at the pixel.
 HWY_INLINE VF ErrorOf(DF df,
-                      const Lanes& lanes,
+                      const LaneViews& lanes,
                       const Vec3& origin,
                       VF m_here,
                       float col,
@@ -153,7 +156,7 @@ HWY_INLINE VF ErrorOf(DF df,
   const VF one = hn::Set(df, 1.0f);
   const VF half = hn::Set(df, 0.5f);
   const VF low = hn::Neg(half);
-  const auto toward = [&](VF start, int i) {
+  const auto toward = [&](VF start, int i) HWY_ATTR {
     return hn::NegMulAdd(m_here, hn::Load(df, lanes.to_src[i]), start);
   };
   const Vec3 q = {
@@ -166,12 +169,12 @@ HWY_INLINE VF ErrorOf(DF df,
       hn::And(hn::Gt(q.z, zero), hn::And(hn::Ge(u, low), hn::Ge(v, low))),
       hn::And(hn::Le(u, hn::Add(hn::Load(df, lanes.max_u), half)),
               hn::Le(v, hn::Add(hn::Load(df, lanes.max_v), half))));
-  // Lanes outside go along on a harmless position.
+  // LaneViews outside go along on a harmless position.
   u = hn::IfThenElseZero(inside, u);
   v = hn::IfThenElseZero(inside, v);
   const VF inv_z = InverseDepthAt(df, lanes, u, v);
   const Vec3 back = Times(df, lanes.to_ref, u, v);
-  const auto away = [&](VF start, int i) {
+  const auto away = [&](VF start, int i) HWY_ATTR {
     return hn::MulAdd(inv_z, hn::Load(df, lanes.to_ref[i]), start);
   };
   const Vec3 p = {away(back.x, 9), away(back.y, 10), away(back.z, 11)};
@@ -196,7 +199,7 @@ void GeometricErrors(const Camera& ref,
   const float row = static_cast<float>(request.row);
   for (int first = 0; first < request.num_views; first += num_lanes) {
     const int count = HWY_MIN(num_lanes, request.num_views - first);
-    Lanes lanes;
+    LaneViews lanes;
     for (int lane = 0; lane < num_lanes; ++lane) {
       const int k = first + (lane < count ? lane : 0);
       FillLane(depth_views[request.views[k]], max_error, lane, &lanes);

@@ -5,6 +5,8 @@
 
 #include "src/cpu/simd_targets.h"
 
+#include <iterator>
+
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 

@@ -50,8 +50,7 @@ class Backend {
                    HypothesisMap* map,
                    const RunControl& control) = 0;
 
-  // Bit j of the result: source view j is consistent with the pixel's plane; 0
-  // where the filter does not look.
+  // Bit j of the result: source view j is consistent with the pixel's plane.
   virtual std::vector<uint32_t> ConsistentViews(const HypothesisMap& map,
                                                 const FilterParams& filter,
                                                 bool geometric,

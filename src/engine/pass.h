@@ -53,7 +53,8 @@ struct Pass {
   RegionPriors regions = RegionPriors::kNone;  // kGeometric only
   int max_candidates = kNumRegions;  // regions that a visit looks into
   int max_drawn_views = kMaxViews;   // and not more than of MethodParams
-  // A visit asks no other views than those it draws from the pixel's own.
+  // A visit asks only max_drawn_views of the views that the pixel trusted last,
+  // those that its neighbours vote for; see ChooseViews().
   bool few_views = false;
   // Only one colour of the checkerboard is visited after the start; the other
   // one follows it in the end (src/core/take_neighbour.h).

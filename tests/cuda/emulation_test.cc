@@ -20,6 +20,7 @@ constexpr int kHeight = 43;
 const Pass kBasic = {PassKind::kBasic, StartFrom::kRandom, 3, 0};
 const Pass kPrior = {PassKind::kPrior, StartFrom::kPrior, 2, 1};
 const Pass kGeometric = {PassKind::kGeometric, StartFrom::kCurrent, 2, 2};
+
 Pass HalfPass() {
   Pass pass = {PassKind::kGeometric, StartFrom::kCurrent, 1, 4};
   pass.half = true;

@@ -205,6 +205,10 @@ TEST(ParseOptionsTest, QualitySetsWhatIsNotGiven) {
       hpm({"--Hpm.quality", "low", "--Hpm.num_geom_passes", "5"});
   EXPECT_LT(low.num_iterations, defaults.num_iterations);
   EXPECT_EQ(low.num_geom_passes, 5);
+  EXPECT_EQ(hpm({"--Hpm.quality", "extreme"}).half_search, 0);
+  EXPECT_EQ(
+      hpm({"--Hpm.quality", "extreme", "--Hpm.half_search", "1"}).half_search,
+      1);
   EXPECT_THAT(Parse({"--Hpm.quality", "best"}).problems, SizeIs(1));
 }
 
