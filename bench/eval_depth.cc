@@ -22,7 +22,7 @@ nlohmann::json ToJson(const DepthScore& score) {
 
 void PrintRow(const char* name, const DepthScore& score) {
   std::string row = fmt::format(
-      "{:<5}{:>10}{:>8.1f}", name, score.num_pixels, 100 * score.density);
+      "{:<6}{:>9}{:>8.1f}", name, score.num_pixels, 100 * score.density);
   for (const double share : score.within)
     row += fmt::format("{:>7.1f}", 100 * share);
   row += fmt::format("{:>11.3f}{:>10.2f}",
@@ -80,10 +80,12 @@ int main(int argc, char** argv) {
         hpm::PrintRow("all", result.all);
         hpm::PrintRow("low", result.low_texture);
         hpm::PrintRow("rest", result.rest);
+        hpm::PrintRow("edges", result.edges);
         hpm::WriteJsonFile(json,
                            {{"all", hpm::ToJson(result.all)},
                             {"low_texture", hpm::ToJson(result.low_texture)},
                             {"rest", hpm::ToJson(result.rest)},
+                            {"edges", hpm::ToJson(result.edges)},
                             {"thresholds", hpm::kDepthThresholds},
                             {"rule", rule},
                             {"stage", options.stage},

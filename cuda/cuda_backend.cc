@@ -147,25 +147,21 @@ class CudaBackendImpl : public CudaBackend {
     planner_ = BandPlanner(options_.launch_seconds);
     tables_ = MakeProblemTables(views, params);
     images_->Upload(views, stream());
-    std::vector<InverseDepths> depths;
     for (size_t j = 0; j < views.srcs.size(); ++j) {
       tables_.views[j].texels = images_->texels(static_cast<int>(j));
-      depths.push_back(images_->inverse_depths(static_cast<int>(j)));
+      tables_.depth_views[j].inverse_depths =
+          images_->inverse_depths(static_cast<int>(j));
     }
     color_weights_.Upload(tables_.color_weights, stream());
     views_.Upload(tables_.views, stream());
-    to_src_.Upload(tables_.to_src, stream());
-    to_ref_.Upload(tables_.to_ref, stream());
+    depth_views_.Upload(tables_.depth_views, stream());
     src_centers_.Upload(tables_.src_centers, stream());
-    depths_.Upload(depths, stream());
     Wait("copying tables to the card");
     DeviceProblem& problem = tables_.problem;
     problem.ref_grey = images_->ref_grey();
     problem.color_weights = color_weights_.data();
     problem.views = views_.data();
-    problem.to_src = to_src_.data();
-    problem.to_ref = to_ref_.data();
-    problem.inverse_depths = depths_.data();
+    problem.depth_views = depth_views_.data();
     problem.src_centers = src_centers_.data();
     problem.texture = images_->texture();
     problem.texture_scale = images_->texture_scale();
@@ -361,9 +357,8 @@ class CudaBackendImpl : public CudaBackend {
   uint64_t random_key_ = 0;
   DeviceBuffer<float> color_weights_;
   DeviceBuffer<ViewGeometry> views_;
-  DeviceBuffer<ViewWarp> to_src_, to_ref_;
+  DeviceBuffer<DepthView> depth_views_;
   DeviceBuffer<Vec3f> src_centers_;
-  DeviceBuffer<InverseDepths> depths_;
   DeviceBuffer<Plane> planes_, priors_, low_priors_;
   DeviceBuffer<float> costs_;
   DeviceBuffer<uint32_t> masks_, consistent_;

@@ -29,12 +29,10 @@ struct DeviceProblem {
   const uint8_t* ref_grey;     // row-major, no padding
   const float* color_weights;  // 256: ColorWeight(shape, d)
   const ViewGeometry* views;
-  const ViewWarp* to_src;  // for the geometric term
-  const ViewWarp* to_ref;
-  const InverseDepths* inverse_depths;  // of each view
-  const Vec3f* src_centers;             // in the reference camera frame
-  unsigned long long texture;           // layered, one layer per view
-  float texture_scale;                  // grey levels per unit of a fetch
+  const DepthView* depth_views;  // for the geometric term
+  const Vec3f* src_centers;      // in the reference camera frame
+  unsigned long long texture;    // layered, one layer per view
+  float texture_scale;           // grey levels per unit of a fetch
 };
 
 // Of the reference image, 0..255; clamps at the border.
@@ -57,47 +55,6 @@ HPM_HD RefPatch RefPatchAt(const DeviceProblem& problem, int col, int row) {
       },
       col,
       row);
-}
-
-HPM_HD bool HasDepthMap(const DeviceProblem& problem, int view) {
-  return problem.inverse_depths[view].steps != nullptr;
-}
-
-// Pixels; 0 for a view without depth map, which has no say.
-HPM_HD float GeometricErrorAt(const DeviceProblem& problem,
-                              const PlaneSlope& slope,
-                              int view,
-                              int col,
-                              int row) {
-  const InverseDepths inverse_depths = problem.inverse_depths[view];
-  if (inverse_depths.steps == nullptr) return 0;
-  return ReprojectionError(Reproject(problem.to_src[view],
-                                     problem.to_ref[view],
-                                     slope,
-                                     static_cast<float>(col),
-                                     static_cast<float>(row),
-                                     inverse_depths),
-                           static_cast<float>(col),
-                           static_cast<float>(row),
-                           problem.params.geometric_term.max_error);
-}
-
-// See Cost in src/core/visit.h.
-HPM_HD void GeometricErrorsAt(const DeviceProblem& problem,
-                              const Plane* planes,
-                              int num_planes,
-                              const uint8_t* views,
-                              int num_views,
-                              int col,
-                              int row,
-                              float* errors) {
-  for (int i = 0; i < num_planes; ++i) {
-    const PlaneSlope slope = SlopeOf(problem.params.ref, planes[i]);
-    for (int k = 0; k < num_views; ++k) {
-      errors[i * num_views + k] =
-          GeometricErrorAt(problem, slope, views[k], col, row);
-    }
-  }
 }
 
 }  // namespace hpm

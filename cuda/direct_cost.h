@@ -3,18 +3,19 @@
 #pragma once
 
 #include "cuda/pair_cost.h"
+#include "cuda/pixel_cost.h"
 
 namespace hpm {
 
 // With the card's form of the matching cost.
 template <class Sampler>
-class DirectCost {
+class DirectCost : public PixelCost {
  public:
   HPM_HD_MEMBER DirectCost(const DeviceProblem& problem,
                            const Window& window,
                            int col,
                            int row)
-      : problem_(problem), window_(window), col_(col), row_(row) {}
+      : PixelCost(problem, col, row), window_(window) {}
 
   HPM_HD_MEMBER void Photometric(const Plane* planes,
                                  int num_planes,
@@ -38,35 +39,18 @@ class DirectCost {
     num_evaluations_ += num_planes * num_views;
   }
 
-  HPM_HD_MEMBER bool HasDepth(int view) const {
-    return HasDepthMap(problem_, view);
-  }
-  HPM_HD_MEMBER void GeometricErrors(const Plane* planes,
-                                     int num_planes,
-                                     const uint8_t* views,
-                                     int num_views,
-                                     float* errors) const {
-    GeometricErrorsAt(
-        problem_, planes, num_planes, views, num_views, col_, row_, errors);
-  }
-
-  HPM_HD_MEMBER int num_evaluations() const { return num_evaluations_; }
-
  private:
-  const DeviceProblem& problem_;
   const Window& window_;
-  int col_, row_;
-  mutable int num_evaluations_ = 0;
 };
 
 // With the matching cost as src/core states it: the yardstick of the tests.
-class CoreCost {
+class CoreCost : public PixelCost {
  public:
   HPM_HD_MEMBER CoreCost(const DeviceProblem& problem,
                          const RefPatch& patch,
                          int col,
                          int row)
-      : problem_(problem), patch_(patch), col_(col), row_(row) {}
+      : PixelCost(problem, col, row), patch_(patch) {}
 
   HPM_HD_MEMBER void Photometric(const Plane* planes,
                                  int num_planes,
@@ -81,7 +65,7 @@ class CoreCost {
         costs[i * num_views + k] = MatchCost(
             problem_.shape,
             patch_,
-            WarpPatch(problem_.to_src[views[k]],
+            WarpPatch(problem_.depth_views[views[k]].to_src,
                       slope,
                       static_cast<float>(col_),
                       static_cast<float>(row_)),
@@ -93,25 +77,8 @@ class CoreCost {
     num_evaluations_ += num_planes * num_views;
   }
 
-  HPM_HD_MEMBER bool HasDepth(int view) const {
-    return HasDepthMap(problem_, view);
-  }
-  HPM_HD_MEMBER void GeometricErrors(const Plane* planes,
-                                     int num_planes,
-                                     const uint8_t* views,
-                                     int num_views,
-                                     float* errors) const {
-    GeometricErrorsAt(
-        problem_, planes, num_planes, views, num_views, col_, row_, errors);
-  }
-
-  HPM_HD_MEMBER int num_evaluations() const { return num_evaluations_; }
-
  private:
-  const DeviceProblem& problem_;
   const RefPatch& patch_;
-  int col_, row_;
-  mutable int num_evaluations_ = 0;
 };
 
 }  // namespace hpm

@@ -20,9 +20,11 @@ __device__ Pixel PixelOfThread(const Band& band) {
       band, thread / kWarpSize, static_cast<int>(thread % kWarpSize));
 }
 
-__global__ void FollowKernel(const PixelState state, const Band band) {
+__global__ void FollowKernel(const VisitParams params,
+                             const PixelState state,
+                             const Band band) {
   const Pixel pixel = PixelOfThread(band);
-  if (pixel.inside) TakeNeighbour(state, pixel.col, pixel.row);
+  if (pixel.inside) TakeNeighbour(params, state, pixel.col, pixel.row);
 }
 
 __global__ void MedianKernel(const Camera camera,
@@ -89,8 +91,8 @@ void LaunchFollow(const SweepLaunch& launch, cudaStream_t stream) {
   FollowKernel<<<Blocks(launch.band.num_warps() * kWarpSize),
                  kBlock,
                  0,
-                 stream>>>(launch.state, launch.band);
-  CheckCuda(cudaGetLastError(), "starting the neighbours' followers");
+                 stream>>>(launch.problem->params, launch.state, launch.band);
+  CheckCuda(cudaGetLastError(), "starting the followers");
 }
 
 void LaunchMedian(const SweepLaunch& launch, cudaStream_t stream) {

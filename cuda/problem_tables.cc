@@ -20,8 +20,8 @@ ProblemTables MakeProblemTables(const ViewSet& views,
   }
   for (const View& src : views.srcs) {
     const ViewWarp warp = MakeViewWarp(views.ref.camera, src.camera);
-    tables.to_src.push_back(warp);
-    tables.to_ref.push_back(MakeViewWarp(src.camera, views.ref.camera));
+    tables.depth_views.push_back(
+        {warp, MakeViewWarp(src.camera, views.ref.camera), {nullptr, 0}});
     tables.src_centers.push_back(
         CamFromWorld(views.ref.camera, Center(src.camera)));
     ViewGeometry geometry = {};

@@ -15,8 +15,8 @@ struct ProblemTables {
   VisitParams visit;      // what SetPass() starts from
   MethodParams method;
   std::vector<float> color_weights;
-  std::vector<ViewGeometry> views;  // texels null
-  std::vector<ViewWarp> to_src, to_ref;
+  std::vector<ViewGeometry> views;     // texels null
+  std::vector<DepthView> depth_views;  // inverse_depths null
   std::vector<Vec3f> src_centers;
 };
 

@@ -13,6 +13,7 @@
 #pragma once
 
 #include "cuda/pair_cost.h"
+#include "cuda/pixel_cost.h"
 #include "cuda/pixel_tiles.h"
 
 #if defined(__CUDACC__)
@@ -155,14 +156,14 @@ HPM_HD_MEMBER HPM_NO_INLINE bool EvaluateTogether(const DeviceProblem& problem,
 }
 
 template <class Sampler, class Warp>
-class PooledCost {
+class PooledCost : public PixelCost {
  public:
   HPM_HD_MEMBER PooledCost(const DeviceProblem& problem,
                            const Warp& warp,
                            WarpPool* pool,
                            int col,
                            int row)
-      : problem_(problem), warp_(warp), pool_(pool), col_(col), row_(row) {}
+      : PixelCost(problem, col, row), warp_(warp), pool_(pool) {}
 
   // `views` in ascending order, as all of src/core gives them.
   HPM_HD_MEMBER void Photometric(const Plane* planes,
@@ -186,26 +187,9 @@ class PooledCost {
     num_evaluations_ += num_planes * num_views;
   }
 
-  HPM_HD_MEMBER bool HasDepth(int view) const {
-    return HasDepthMap(problem_, view);
-  }
-  HPM_HD_MEMBER void GeometricErrors(const Plane* planes,
-                                     int num_planes,
-                                     const uint8_t* views,
-                                     int num_views,
-                                     float* errors) const {
-    GeometricErrorsAt(
-        problem_, planes, num_planes, views, num_views, col_, row_, errors);
-  }
-
-  HPM_HD_MEMBER int num_evaluations() const { return num_evaluations_; }
-
  private:
-  const DeviceProblem& problem_;
   const Warp& warp_;
   WarpPool* pool_;
-  int col_, row_;
-  mutable int num_evaluations_ = 0;
 };
 
 // After the visit, by every lane, also one without a pixel.

@@ -99,6 +99,30 @@ cv::Mat LowTextureMask(const std::filesystem::path& path,
   return variance < limit * limit;
 }
 
+// Pixels at most 3 pixels from where neighbouring true depths differ by 5 %.
+cv::Mat EdgeMask(const Map& truth) {
+  constexpr float kStep = 1.05f;
+  cv::Mat edges(truth.height, truth.width, CV_8U, cv::Scalar(0));
+  const auto mark = [&](int col, int row, int other_col, int other_row) {
+    if (other_col >= truth.width || other_row >= truth.height) return;
+    const size_t width = static_cast<size_t>(truth.width);
+    const float a = truth.data[row * width + col];
+    const float b = truth.data[other_row * width + other_col];
+    if (!(a > 0) || !(b > 0) || (a < kStep * b && b < kStep * a)) return;
+    edges.at<uint8_t>(row, col) = edges.at<uint8_t>(other_row, other_col) = 1;
+  };
+  for (int row = 0; row < truth.height; ++row) {
+    for (int col = 0; col < truth.width; ++col) {
+      mark(col, row, col + 1, row);
+      mark(col, row, col, row + 1);
+    }
+  }
+  cv::dilate(edges,
+             edges,
+             cv::getStructuringElement(cv::MORPH_RECT, cv::Size(5, 5)));
+  return edges;
+}
+
 Vec3f NormalAt(const Map& normals, int col, int row) {
   const size_t plane = static_cast<size_t>(normals.width) * normals.height;
   const size_t at = static_cast<size_t>(row) * normals.width + col;
@@ -132,7 +156,7 @@ float AngleInDegrees(const Vec3f& a, const Vec3f& b) {
 DepthEvaluation EvaluateDepth(const DepthEvaluationOptions& options) {
   const SparseModel model = ReadSparseModel(options.workspace / "sparse");
   DepthEvaluation result;
-  Tally all, low, rest;
+  Tally all, low, rest, edges;
   for (const SparseImage& image : model.images) {
     const std::filesystem::path truth_path =
         options.truth / "depth_maps" / (image.name + ".bin");
@@ -158,6 +182,7 @@ DepthEvaluation EvaluateDepth(const DepthEvaluationOptions& options) {
         LowTextureMask(options.workspace / "images" / image.name,
                        options.low_texture_limit,
                        *truth);
+    const cv::Mat near_edge = EdgeMask(*truth);
     const Camera camera =
         ModelCamera(model, image, truth->width, truth->height);
     for (int row = 0; row < truth->height; ++row) {
@@ -180,6 +205,8 @@ DepthEvaluation EvaluateDepth(const DepthEvaluationOptions& options) {
         all.Add(estimate, true_depth, normal_error);
         Tally& part = low_texture.at<uint8_t>(row, col) != 0 ? low : rest;
         part.Add(estimate, true_depth, normal_error);
+        if (near_edge.at<uint8_t>(row, col) != 0)
+          edges.Add(estimate, true_depth, normal_error);
       }
     }
   }
@@ -191,6 +218,7 @@ DepthEvaluation EvaluateDepth(const DepthEvaluationOptions& options) {
   result.all = all.Score();
   result.low_texture = low.Score();
   result.rest = rest.Score();
+  result.edges = edges.Score();
   return result;
 }
 

@@ -35,6 +35,7 @@ struct DepthEvaluation {
   DepthScore all;
   DepthScore low_texture;  // grey deviation below the limit in an 11x11 window
   DepthScore rest;
+  DepthScore edges;  // within 3 pixels of a step of the truth by 5 %
   int num_images = 0;
   int num_missing_maps = 0;  // count as empty
 };

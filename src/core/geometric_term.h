@@ -119,15 +119,53 @@ HPM_HD float InterpolateInverseDepth(
   return map.step * (top + wv * (bottom - top));
 }
 
-HPM_HD Reprojection Reproject(const ViewWarp& to_src,
-                              const ViewWarp& to_ref,
+// A source view and the depth it found.
+struct DepthView {
+  ViewWarp to_src, to_ref;
+  InverseDepths inverse_depths;  // null steps: there is no depth map
+
+  HPM_HD_MEMBER bool HasDepth() const {
+    return inverse_depths.steps != nullptr;
+  }
+};
+
+// Of a view with a depth map.
+HPM_HD Reprojection Reproject(const DepthView& view,
                               const PlaneSlope& slope,
                               float col,
-                              float row,
-                              const InverseDepths& map) {
-  return Reproject(to_src, to_ref, slope, col, row, [&](float u, float v) {
-    return InterpolateInverseDepth(map, to_src.width, to_src.height, u, v);
+                              float row) {
+  const ViewWarp& to_src = view.to_src;
+  return Reproject(to_src, view.to_ref, slope, col, row, [&](float u, float v) {
+    return InterpolateInverseDepth(
+        view.inverse_depths, to_src.width, to_src.height, u, v);
   });
+}
+
+// errors[i * num_views + k] of planes[i] in depth_views[views[k]], pixels, at
+// most max_error; 0 in a view without a depth map, which has no say: an error
+// would count against every hypothesis.
+HPM_HD void GeometricErrors(const Camera& ref,
+                            const DepthView* depth_views,
+                            float max_error,
+                            int col,
+                            int row,
+                            const Plane* planes,
+                            int num_planes,
+                            const uint8_t* views,
+                            int num_views,
+                            float* errors) {
+  const float x = static_cast<float>(col);
+  const float y = static_cast<float>(row);
+  for (int i = 0; i < num_planes; ++i) {
+    const PlaneSlope slope = SlopeOf(ref, planes[i]);
+    for (int k = 0; k < num_views; ++k) {
+      const DepthView& view = depth_views[views[k]];
+      errors[i * num_views + k] =
+          view.HasDepth()
+              ? ReprojectionError(Reproject(view, slope, x, y), x, y, max_error)
+              : 0.0f;
+    }
+  }
 }
 
 }  // namespace hpm

@@ -9,7 +9,8 @@
 
 namespace hpm {
 
-constexpr int kNumRefined = 6;
+constexpr int kNumCombined = 3;
+constexpr int kNumRefined = 2 * kNumCombined;
 
 // Uniform on the hemisphere that faces the camera along `ray`.
 HPM_HD Vec3f RandomNormal(const Vec3f& ray, Rng* rng) {
@@ -37,33 +38,19 @@ HPM_HD Vec3f PerturbNormal(const Vec3f& n,
   return Dot(z, ray) < 0 ? z : n;
 }
 
-// The hypotheses beside the current one, in the order of the specification:
-// (z_r,n) (z,n_r) (z_r,n_r) with a random depth and normal,
-HPM_HD void RandomHypotheses(const Camera& camera,
-                             float col,
-                             float row,
-                             float z,
-                             const Vec3f& n,
-                             float z_random,
-                             const Vec3f& n_random,
-                             Plane planes[3]) {
-  planes[0] = PlaneFromDepth(camera, col, row, z_random, n);
-  planes[1] = PlaneFromDepth(camera, col, row, z, n_random);
-  planes[2] = PlaneFromDepth(camera, col, row, z_random, n_random);
-}
-
-// and (z,n_p) (z_p,n) (z_p,n_p) with perturbed ones.
-HPM_HD void NearHypotheses(const Camera& camera,
-                           float col,
-                           float row,
-                           float z,
-                           const Vec3f& n,
-                           float z_perturbed,
-                           const Vec3f& n_perturbed,
-                           Plane planes[3]) {
-  planes[0] = PlaneFromDepth(camera, col, row, z, n_perturbed);
-  planes[1] = PlaneFromDepth(camera, col, row, z_perturbed, n);
-  planes[2] = PlaneFromDepth(camera, col, row, z_perturbed, n_perturbed);
+// The hypotheses beside the current one, from another depth and normal: random
+// or perturbed ones in the specification.
+HPM_HD void CombineHypotheses(const Camera& camera,
+                              float col,
+                              float row,
+                              float z,
+                              const Vec3f& n,
+                              float z_other,
+                              const Vec3f& n_other,
+                              Plane planes[kNumCombined]) {
+  planes[0] = PlaneFromDepth(camera, col, row, z_other, n);
+  planes[1] = PlaneFromDepth(camera, col, row, z, n_other);
+  planes[2] = PlaneFromDepth(camera, col, row, z_other, n_other);
 }
 
 }  // namespace hpm

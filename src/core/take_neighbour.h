@@ -2,6 +2,7 @@
 #pragma once
 
 #include "src/core/pixel_state.h"
+#include "src/core/visit.h"
 
 namespace hpm {
 
@@ -10,9 +11,24 @@ namespace hpm {
 // have the geometric term: where the views disagree the pixel keeps its own.
 constexpr float kRefinedMayCostMore = 0.1f;
 
+// Whether the plane of another pixel faces this one at an accepted depth.
+HPM_HD bool IsAccepted(const VisitParams& params,
+                       const Plane& plane,
+                       int col,
+                       int row) {
+  const Vec3f ray =
+      RayAt(params.ref, static_cast<float>(col), static_cast<float>(row));
+  const float facing = -Dot(plane.normal, ray);
+  const float z = plane.distance / facing;
+  return facing > 0 && z >= params.depth_min && z <= params.depth_max;
+}
+
 // Takes the hypothesis of the direct neighbour, of the other colour, whose cost
 // is smallest; keeps its own where it matches clearly better.
-HPM_HD void TakeNeighbour(const PixelState& state, int col, int row) {
+HPM_HD void TakeNeighbour(const VisitParams& params,
+                          const PixelState& state,
+                          int col,
+                          int row) {
   const int at = row * state.width + col;
   const int dcol[4] = {0, -1, 1, 0};
   const int drow[4] = {-1, 0, 0, 1};
@@ -24,6 +40,7 @@ HPM_HD void TakeNeighbour(const PixelState& state, int col, int row) {
     if (c < 0 || r < 0 || c >= state.width || r >= state.height) continue;
     const int neighbour = r * state.width + c;
     if (!(state.costs[neighbour] < best_cost)) continue;
+    if (!IsAccepted(params, state.planes[neighbour], col, row)) continue;
     best = neighbour;
     best_cost = state.costs[neighbour];
   }

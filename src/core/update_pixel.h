@@ -109,24 +109,24 @@ HPM_HD int RefinedPlanes(const VisitParams& params,
       z_random = rng->Uniform(params.depth_min, params.depth_max);
       n_random = RandomNormal(ray, rng);
     }
-    RandomHypotheses(
+    CombineHypotheses(
         params.ref, x, y, depth, best.normal, z_random, n_random, planes);
     if (prior != nullptr) planes[0] = *prior;
-    num_planes = 3;
+    num_planes = kNumCombined;
   }
   const float z_perturbed = depth * rng->Uniform(1 - params.depth_perturbation,
                                                  1 + params.depth_perturbation);
   const Vec3f n_perturbed =
       PerturbNormal(best.normal, ray, params.normal_perturbation, rng);
-  NearHypotheses(params.ref,
-                 x,
-                 y,
-                 depth,
-                 best.normal,
-                 z_perturbed,
-                 n_perturbed,
-                 planes + num_planes);
-  return num_planes + 3;
+  CombineHypotheses(params.ref,
+                    x,
+                    y,
+                    depth,
+                    best.normal,
+                    z_perturbed,
+                    n_perturbed,
+                    planes + num_planes);
+  return num_planes + kNumCombined;
 }
 
 template <class Cost>

@@ -88,7 +88,7 @@ class CpuBackend : public Backend {
     }
     if (pass.half) {
       HalfSweep(state, 0, control, [&](int col, int row) {
-        TakeNeighbour(state, col, row);
+        TakeNeighbour(params, state, col, row);
         return uint64_t{0};
       });
     }

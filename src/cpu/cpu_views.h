@@ -22,9 +22,7 @@ class CpuViews {
   // Camera centre of a source view in the reference camera frame.
   const std::vector<Vec3f>& src_centers() const { return src_centers_; }
 
-  bool HasDepth(int view) const {
-    return depth_views_[view].inverse_depths.steps != nullptr;
-  }
+  bool HasDepth(int view) const { return depth_views_[view].HasDepth(); }
   const DepthView* depth_views() const { return depth_views_.data(); }
 
   RefPatch PatchAt(int col, int row) const;

@@ -9,15 +9,7 @@
 
 namespace hpm {
 
-// A source view with its depth map.
-struct DepthView {
-  ViewWarp to_src, to_ref;
-  InverseDepths inverse_depths;  // null steps: there is no depth map
-};
-
-// Computes errors[i * num_views + k] of planes[i] in view views[k], in pixels
-// and at most max_error; 0 in a view without a depth map, which has no say (an
-// error would count against every hypothesis).
+// GeometricErrors() of src/core for the request.
 using GeometricErrorFunction = void (*)(const Camera& ref,
                                         const DepthView* depth_views,
                                         float max_error,

@@ -56,7 +56,7 @@ HWY_INLINE void FillLane(const DepthView& view,
   lanes->max_u[lane] = static_cast<float>(view.to_src.width - 1);
   lanes->max_v[lane] = static_cast<float>(view.to_src.height - 1);
   lanes->step[lane] = view.inverse_depths.step;
-  lanes->worst[lane] = view.inverse_depths.steps != nullptr ? max_error : 0;
+  lanes->worst[lane] = view.HasDepth() ? max_error : 0;
   lanes->views[lane] = &view;
 }
 
@@ -85,13 +85,13 @@ HWY_INLINE int32_t FourBytes(const uint8_t* from) {
 
 HWY_INLINE void ReadTaps(
     const DepthView& view, int col, int row, int lane, Taps* taps) {
-  const uint8_t* steps = view.inverse_depths.steps;
-  if (steps == nullptr) {
+  if (!view.HasDepth()) {
     taps->a[lane] = taps->b[lane] = taps->c[lane] = taps->d[lane] = 0;
     return;
   }
   const size_t width = static_cast<size_t>(view.to_src.width);
-  const uint8_t* top = steps + kInverseDepthBytes * (row * width + col);
+  const uint8_t* top =
+      view.inverse_depths.steps + kInverseDepthBytes * (row * width + col);
   const size_t right = col + 1 < view.to_src.width ? kInverseDepthBytes : 0;
   const size_t below =
       row + 1 < view.to_src.height ? kInverseDepthBytes * width : 0;
@@ -169,7 +169,7 @@ HWY_INLINE VF ErrorOf(DF df,
       hn::And(hn::Gt(q.z, zero), hn::And(hn::Ge(u, low), hn::Ge(v, low))),
       hn::And(hn::Le(u, hn::Add(hn::Load(df, lanes.max_u), half)),
               hn::Le(v, hn::Add(hn::Load(df, lanes.max_v), half))));
-  // LaneViews outside go along on a harmless position.
+  // Lanes outside go along on a harmless position.
   u = hn::IfThenElseZero(inside, u);
   v = hn::IfThenElseZero(inside, v);
   const VF inv_z = InverseDepthAt(df, lanes, u, v);

@@ -186,54 +186,62 @@ HWY_INLINE VF PairCosts(D df,
   const VF center = hn::Set(df, patch.center);
   const int32_t* texels = reinterpret_cast<const int32_t*>(match.origin);
   VF sum_s = zero, sum_ss = zero, sum_rs = zero;
-  constexpr int R = hn::MaxLanes(D()) <= 4 ? 2 : 1, N = R * kPatchAxis;
-  for (int j = 0; j < kPatchAxis; j += R) {
-    VF z[N], fu[N], fv[N];
-    VI index[N];
-    for (int r = 0; r < R; ++r) {
-      const VF dj = hn::Set(df, static_cast<float>(match.shape.offset[j + r]));
-      const VF row_x = hn::MulAdd(dj, drow[0], origin[0]);
-      const VF row_y = hn::MulAdd(dj, drow[1], origin[1]);
-      const VF row_z = hn::MulAdd(dj, drow[2], origin[2]);
+  // All samples of a row, or of two where vectors are short, go through each
+  // step together: while one waits for its last step the others fill the time.
+  constexpr int kRows = hn::MaxLanes(D()) <= 4 ? 2 : 1;
+  constexpr int kSamples = kRows * kPatchAxis;
+  static_assert(kPatchAxis % kRows == 0 && kSamples % 3 == 0, "whole groups");
+  for (int j = 0; j < kPatchAxis; j += kRows) {
+    VF x[kSamples], y[kSamples], inv_z[kSamples];
+    for (int r = 0; r < kRows; ++r) {
+      const VF down =
+          hn::Set(df, static_cast<float>(match.shape.offset[j + r]));
+      const VF row_x = hn::MulAdd(down, drow[0], origin[0]);
+      const VF row_y = hn::MulAdd(down, drow[1], origin[1]);
+      const VF row_z = hn::MulAdd(down, drow[2], origin[2]);
       for (int i = 0; i < kPatchAxis; ++i) {
-        const VF d = hn::Set(df, static_cast<float>(match.shape.offset[i]));
-        z[r * kPatchAxis + i] = hn::MulAdd(d, dcol[2], row_z);
-        fu[r * kPatchAxis + i] = hn::MulAdd(d, dcol[0], row_x);
-        fv[r * kPatchAxis + i] = hn::MulAdd(d, dcol[1], row_y);
+        const VF right = hn::Set(df, static_cast<float>(match.shape.offset[i]));
+        const int k = r * kPatchAxis + i;
+        x[k] = hn::MulAdd(right, dcol[0], row_x);
+        y[k] = hn::MulAdd(right, dcol[1], row_y);
+        inv_z[k] = hn::MulAdd(right, dcol[2], row_z);
       }
     }
-    for (int i = 0; i < N; i += 3) InvertThree(df, z + i);
-    for (int i = 0; i < N; ++i) {
-      fu[i] = hn::Min(hn::Max(hn::Mul(fu[i], z[i]), zero), max_u);
-      fv[i] = hn::Min(hn::Max(hn::Mul(fv[i], z[i]), zero), max_v);
+    for (int k = 0; k < kSamples; k += 3) InvertThree(df, inv_z + k);
+    VF fu[kSamples], fv[kSamples];
+    VI index[kSamples];
+    for (int k = 0; k < kSamples; ++k) {
+      const VF u = hn::Min(hn::Max(hn::Mul(x[k], inv_z[k]), zero), max_u);
+      const VF v = hn::Min(hn::Max(hn::Mul(y[k], inv_z[k]), zero), max_v);
+      const VI iu = Truncate(u);
+      const VI iv = Truncate(v);
+      index[k] = hn::Add(hn::Add(hn::Mul(iv, stride), hn::Add(iu, iu)), offset);
+      fu[k] = hn::Sub(u, hn::ConvertTo(df, iu));
+      fv[k] = hn::Sub(v, hn::ConvertTo(df, iv));
     }
-    for (int i = 0; i < N; ++i) {
-      const VI iu = Truncate(fu[i]);
-      const VI iv = Truncate(fv[i]);
-      index[i] = hn::Add(hn::Add(hn::Mul(iv, stride), hn::Add(iu, iu)), offset);
-      fu[i] = hn::Sub(fu[i], hn::ConvertTo(df, iu));
-      fv[i] = hn::Sub(fv[i], hn::ConvertTo(df, iv));
-    }
-    for (int i = 0; i < N; ++i)
-      index[i] = hn::GatherOffset(di, texels, index[i]);
-    for (int i = 0; i < N; ++i) {
-      const VI texel = index[i];
-      const VF p00 = hn::ConvertTo(df, hn::And(texel, byte));
-      const VF p10 = hn::ConvertTo(df, hn::TableLookupBytesOr0(texel, second));
-      const VF p01 = hn::ConvertTo(df, hn::TableLookupBytesOr0(texel, third));
+    VI texel[kSamples];
+    for (int k = 0; k < kSamples; ++k)
+      texel[k] = hn::GatherOffset(di, texels, index[k]);
+    VF sample[kSamples];
+    for (int k = 0; k < kSamples; ++k) {
+      const VF p00 = hn::ConvertTo(df, hn::And(texel[k], byte));
+      const VF p10 =
+          hn::ConvertTo(df, hn::TableLookupBytesOr0(texel[k], second));
+      const VF p01 =
+          hn::ConvertTo(df, hn::TableLookupBytesOr0(texel[k], third));
       const VF p11 = hn::ConvertTo(
-          df, hn::BitCast(di, hn::ShiftRight<24>(hn::BitCast(du, texel))));
-      const VF top = hn::MulAdd(fu[i], hn::Sub(p01, p00), p00);
-      const VF bottom = hn::MulAdd(fu[i], hn::Sub(p11, p10), p10);
-      fu[i] = hn::Sub(hn::MulAdd(fv[i], hn::Sub(bottom, top), top), center);
+          df, hn::BitCast(di, hn::ShiftRight<24>(hn::BitCast(du, texel[k]))));
+      const VF top = hn::MulAdd(fu[k], hn::Sub(p01, p00), p00);
+      const VF bottom = hn::MulAdd(fu[k], hn::Sub(p11, p10), p10);
+      sample[k] = hn::Sub(hn::MulAdd(fv[k], hn::Sub(bottom, top), top), center);
     }
-    for (int i = 0; i < N; ++i) {
-      const VF s = fu[i];
-      const int k = j * kPatchAxis + i;
-      const VF ws = hn::Mul(hn::Set(df, patch.weight[k]), s);
+    const float* weight = patch.weight + j * kPatchAxis;
+    const float* weighted = patch.weighted + j * kPatchAxis;
+    for (int k = 0; k < kSamples; ++k) {
+      const VF ws = hn::Mul(hn::Set(df, weight[k]), sample[k]);
       sum_s = hn::Add(sum_s, ws);
-      sum_ss = hn::MulAdd(ws, s, sum_ss);
-      sum_rs = hn::MulAdd(hn::Set(df, patch.weighted[k]), s, sum_rs);
+      sum_ss = hn::MulAdd(ws, sample[k], sum_ss);
+      sum_rs = hn::MulAdd(hn::Set(df, weighted[k]), sample[k], sum_rs);
     }
   }
   const VF min_variance = hn::Set(df, kMinVariance);

@@ -61,7 +61,7 @@ struct Pass {
   bool half = false;
 
   int first_color() const { return half ? 1 : 0; }
-  // Half-sweeps that count for the progress: all but the median's.
+  // Half-sweeps that count for the progress: those with matching costs.
   int NumSteps() const {
     return (start == StartFrom::kStored ? 0 : 2) +
            (2 - first_color()) * num_iterations;

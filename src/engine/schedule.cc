@@ -89,7 +89,6 @@ class StageList {
     stages_->push_back(stage);
   }
 
-  // half: see Pass; hpm_fast is content with that everywhere.
   void AddGeometric(int level, RegionPriors regions, bool half) {
     StageSpec stage;
     stage.level = level;
@@ -104,7 +103,7 @@ class StageList {
       pass.max_drawn_views = 2;
       pass.few_views = true;
     }
-    pass.half = half || fast_;
+    pass.half = half;
     stage.passes.push_back(pass);
     stages_->push_back(stage);
   }
@@ -165,7 +164,7 @@ void AddRegionStages(bool fast,
       list->AddGeometric(
           level,
           last && level == 0 ? RegionPriors::kStrong : RegionPriors::kWeak,
-          !last);
+          fast || !last);
     }
   }
 }

@@ -28,8 +28,8 @@ cmake --preset arm64 -B "$build" "${options[@]}" >"$folder/cmake.log" 2>&1 ||
 # Each test is a target of the same name.
 tests=(
   candidates consistency_filter geometric_term initialize_pixel match_cost median_filter plane
-  prior_term refinement rng sampling_pattern update_pixel view_selection warp
-  load_image prior triangulation_opencv schedule memory_plan lru_cache
+  prior_term refinement rng sampling_pattern take_neighbour update_pixel view_selection warp
+  load_image prior triangulation_opencv mine_regions schedule memory_plan lru_cache
   texel_image cpu_targets cpu_views cpu_backend
 )
 cmake --build "$build" -j 2 --target "${tests[@]/%/_test}" accuracy_test hpm_mvs >"$folder/build.log" 2>&1 ||

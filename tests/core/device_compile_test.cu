@@ -5,6 +5,7 @@
 #include "src/core/initialize_pixel.h"
 #include "src/core/match_cost.h"
 #include "src/core/median_filter.h"
+#include "src/core/take_neighbour.h"
 #include "src/core/update_pixel.h"
 #include "src/core/upsample_plane.h"
 
@@ -14,9 +15,7 @@ struct DeviceViews {
   Camera ref;
   const unsigned char* ref_image;
   const unsigned char* const* src_images;
-  const InverseDepths* inverse_depths;
-  const ViewWarp* to_src;
-  const ViewWarp* to_ref;
+  const DepthView* depth_views;
   PatchShape shape;
 };
 
@@ -45,7 +44,7 @@ struct DeviceCost {
     for (int i = 0; i < num_planes; ++i) {
       const PlaneSlope slope = SlopeOf(views.ref, planes[i]);
       for (int k = 0; k < num_views; ++k) {
-        const ViewWarp& warp = views.to_src[chosen[k]];
+        const ViewWarp& warp = views.depth_views[chosen[k]].to_src;
         const unsigned char* image = views.src_images[chosen[k]];
         costs[i * num_views + k] = MatchCost(
             views.shape,
@@ -63,7 +62,7 @@ struct DeviceCost {
   }
 
   __device__ bool HasDepth(int view) const {
-    return views.inverse_depths[view].steps != nullptr;
+    return views.depth_views[view].HasDepth();
   }
 
   __device__ void GeometricErrors(const Plane* planes,
@@ -71,21 +70,16 @@ struct DeviceCost {
                                   const uint8_t* asked,
                                   int num_views,
                                   float* errors) const {
-    for (int i = 0; i < num_planes; ++i) {
-      for (int k = 0; k < num_views; ++k) {
-        const int view = asked[k];
-        errors[i * num_views + k] =
-            ReprojectionError(Reproject(views.to_src[view],
-                                        views.to_ref[view],
-                                        SlopeOf(views.ref, planes[i]),
-                                        static_cast<float>(col),
-                                        static_cast<float>(row),
-                                        views.inverse_depths[view]),
-                              static_cast<float>(col),
-                              static_cast<float>(row),
-                              5.0f);
-      }
-    }
+    hpm::GeometricErrors(views.ref,
+                         views.depth_views,
+                         5.0f,
+                         col,
+                         row,
+                         planes,
+                         num_planes,
+                         asked,
+                         num_views,
+                         errors);
   }
 };
 
@@ -103,6 +97,7 @@ __global__ void VisitPixels(VisitParams params,
   Rng rng(1, col, row);
   InitializePixel(params, state, StartFrom::kRandom, cost, &rng, col, row);
   UpdatePixel(params, *pattern, state, cost, &rng, 0, col, row);
+  TakeNeighbour(params, state, col, row);
   MedianFilterPixel(params.ref, state, col, row);
   const int at = row * state.width + col;
   consistent[at] = ConsistentViews(

@@ -34,7 +34,8 @@ struct FakeCost {
                        float* errors) const {
     for (int i = 0; i < num_planes; ++i) {
       for (int k = 0; k < num_views; ++k) {
-        errors[i * num_views + k] = geometric(planes[i], views[k]);
+        errors[i * num_views + k] =
+            HasDepth(views[k]) ? geometric(planes[i], views[k]) : 0.0f;
       }
     }
   }

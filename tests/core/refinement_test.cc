@@ -88,17 +88,18 @@ TEST(PerturbNormal, KeepsANormalThatWouldTurnAway) {
 }
 
 // Specification 6.2: the paper's seven without the current one.
-TEST(Hypotheses, AreTheSixCombinationsInOrder) {
+TEST(CombineHypotheses, GivesTheSixCombinations) {
   const Camera camera = MakeTestCamera(100, 80, 90, 0.3, {0, 0, 0});
   const Vec3f n = Normalized({0.1f, 0, -1});
   const Vec3f n_random = Normalized({-0.5f, 0.3f, -1});
   const Vec3f n_perturbed = Normalized({0.12f, 0.01f, -1});
   Plane planes[kNumRefined];
-  RandomHypotheses(camera, 30, 50, 5, n, 8, n_random, planes);
-  NearHypotheses(camera, 30, 50, 5, n, 5.1f, n_perturbed, planes + 3);
-  const float depths[] = {8, 5, 8, 5, 5.1f, 5.1f};
+  CombineHypotheses(camera, 30, 50, 5, n, 8, n_random, planes);
+  CombineHypotheses(
+      camera, 30, 50, 5, n, 5.1f, n_perturbed, planes + kNumCombined);
+  const float depths[] = {8, 5, 8, 5.1f, 5, 5.1f};
   const Vec3f* normals[] = {
-      &n, &n_random, &n_random, &n_perturbed, &n, &n_perturbed};
+      &n, &n_random, &n_random, &n, &n_perturbed, &n_perturbed};
   for (int i = 0; i < kNumRefined; ++i) {
     EXPECT_NEAR(DepthAt(camera, planes[i], 30, 50), depths[i], 1e-5) << i;
     EXPECT_EQ(Norm(planes[i].normal - *normals[i]), 0) << i;

@@ -122,7 +122,6 @@ void EmulatedBackend::SetViews(const ViewSet& views,
   views_ = views;
   tables_ = MakeProblemTables(views, params);
   texels_.clear();
-  inverse_depths_.clear();
   num_evaluations_ = 0;
   for (size_t j = 0; j < views.srcs.size(); ++j) {
     const GrayImage& image = *views_.srcs[j].image;
@@ -135,17 +134,16 @@ void EmulatedBackend::SetViews(const ViewSet& views,
     }
     texels_.push_back(std::move(texels));
     tables_.views[j].texels = texels_.back().data();
-    inverse_depths_.push_back(views_.srcs[j].inverse_depth
-                                  ? views_.srcs[j].inverse_depth->View()
-                                  : InverseDepths{nullptr, 0});
+    if (views_.srcs[j].inverse_depth) {
+      tables_.depth_views[j].inverse_depths =
+          views_.srcs[j].inverse_depth->View();
+    }
   }
   DeviceProblem& problem = tables_.problem;
   problem.ref_grey = views_.ref.image->data.data();
   problem.color_weights = tables_.color_weights.data();
   problem.views = tables_.views.data();
-  problem.to_src = tables_.to_src.data();
-  problem.to_ref = tables_.to_ref.data();
-  problem.inverse_depths = inverse_depths_.data();
+  problem.depth_views = tables_.depth_views.data();
   problem.src_centers = tables_.src_centers.data();
 }
 
@@ -179,7 +177,7 @@ void EmulatedBackend::RunSweep(const Sweep& sweep,
         break;
       case SweepKind::kFollow:
         ForEachPixel(launch.band, [&](const Pixel& pixel) {
-          TakeNeighbour(state, pixel.col, pixel.row);
+          TakeNeighbour(tables_.problem.params, state, pixel.col, pixel.row);
         });
         break;
       case SweepKind::kMedian:

@@ -54,7 +54,6 @@ class EmulatedBackend : public Backend {
   ViewSet views_;
   ProblemTables tables_;
   std::vector<std::vector<uint32_t>> texels_;
-  std::vector<InverseDepths> inverse_depths_;
   uint64_t num_evaluations_ = 0;
 };
 

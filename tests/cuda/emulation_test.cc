@@ -3,8 +3,8 @@
 #include "src/core/sampling_pattern.h"
 #include "src/cpu/cpu_backend.h"
 #include "src/engine/estimator.h"
-#include "tests/cpu/scene_views.h"
 #include "tests/cuda/emulated_backend.h"
+#include "tests/cuda/test_problem.h"
 
 #include <cmath>
 #include <cstring>
@@ -16,18 +16,6 @@ namespace {
 
 constexpr int kWidth = 61;
 constexpr int kHeight = 43;
-
-const Pass kBasic = {PassKind::kBasic, StartFrom::kRandom, 3, 0};
-const Pass kPrior = {PassKind::kPrior, StartFrom::kPrior, 2, 1};
-const Pass kGeometric = {PassKind::kGeometric, StartFrom::kCurrent, 2, 2};
-
-Pass HalfPass() {
-  Pass pass = {PassKind::kGeometric, StartFrom::kCurrent, 1, 4};
-  pass.half = true;
-  pass.few_views = true;
-  pass.max_drawn_views = 2;
-  return pass;
-}
 
 const Pass kNoMedian = {PassKind::kBasic, StartFrom::kCurrent, 1, 3, 0, false};
 const FilterParams kFilter = {0.1f, 0.05f, 1.0f, 2};
@@ -51,28 +39,8 @@ bool SameMaps(const HypothesisMap& a, const HypothesisMap& b) {
 
 class EmulationTest : public testing::Test {
  protected:
-  // Sources differ in size, one is rolled and one has no depth map.
   static ViewSet MakeViews(const std::string& scene, int width, int height) {
-    SceneOptions options;
-    options.num_views = 6;
-    options.width = width;
-    options.height = height;
-    options.quarter_turns = {0, 0, 1, 0, 0, 0};
-    const auto rendered = RenderViews(MakeScene(scene, options), 2);
-    ViewSet views = AsViewSet(rendered);
-    for (size_t j = 0; j < views.srcs.size(); ++j) {
-      std::vector<float> inverse;
-      for (const float z : rendered[j + 1].truth.depth) {
-        inverse.push_back(z > 0 ? 1 / z : 0);
-      }
-      views.srcs[j].inverse_depth =
-          std::make_shared<const InverseDepthMap>(InverseDepthMap::Of(inverse));
-    }
-    views.srcs[3].inverse_depth = nullptr;
-    View& cropped = views.srcs[4];
-    cropped = Cropped(cropped, 2, 1, width - 5, height - 3);
-    cropped.inverse_depth = nullptr;
-    return views;
+    return MakeTestViews(RenderTestViews(scene, width, height));
   }
 
   // A prior on a part of the image, near the truth.

@@ -6,8 +6,8 @@
 #include "cuda/self_test.h"
 #include "src/core/sampling_pattern.h"
 #include "src/cpu/cpu_backend.h"
-#include "tests/cpu/scene_views.h"
 #include "tests/cuda/emulated_backend.h"
+#include "tests/cuda/test_problem.h"
 
 #include <cmath>
 #include <cstring>
@@ -17,18 +17,6 @@
 
 namespace hpm {
 namespace {
-
-const Pass kBasic = {PassKind::kBasic, StartFrom::kRandom, 3, 0};
-const Pass kPrior = {PassKind::kPrior, StartFrom::kPrior, 2, 1};
-const Pass kGeometric = {PassKind::kGeometric, StartFrom::kCurrent, 2, 2};
-
-Pass HalfPass() {
-  Pass pass = {PassKind::kGeometric, StartFrom::kCurrent, 1, 4};
-  pass.half = true;
-  pass.few_views = true;
-  pass.max_drawn_views = 2;
-  return pass;
-}
 
 struct Variant {
   const char* name;
@@ -55,26 +43,8 @@ class GpuTest : public testing::Test {
   }
 
   static ViewSet MakeViews(const std::string& scene, int width, int height) {
-    SceneOptions options;
-    options.num_views = 6;
-    options.width = width;
-    options.height = height;
-    options.quarter_turns = {0, 0, 1, 0, 0, 0};
-    rendered_ = RenderViews(MakeScene(scene, options), 2);
-    ViewSet views = AsViewSet(rendered_);
-    for (size_t j = 0; j < views.srcs.size(); ++j) {
-      std::vector<float> inverse;
-      for (const float z : rendered_[j + 1].truth.depth) {
-        inverse.push_back(z > 0 ? 1 / z : 0);
-      }
-      views.srcs[j].inverse_depth =
-          std::make_shared<const InverseDepthMap>(InverseDepthMap::Of(inverse));
-    }
-    views.srcs[3].inverse_depth = nullptr;
-    View& cropped = views.srcs[4];
-    cropped = Cropped(cropped, 2, 1, width - 5, height - 3);
-    cropped.inverse_depth = nullptr;
-    return views;
+    rendered_ = RenderTestViews(scene, width, height);
+    return MakeTestViews(rendered_);
   }
 
   struct Result {

@@ -31,23 +31,32 @@ ScheduleOptions Method(const std::string& name, int num_geom_passes) {
   return options;
 }
 
+// Mean over the first `num_maps` views of their median errors.
 void ExpectAccurate(const std::string& target,
                     const std::string& scene,
                     const SceneOptions& size,
-                    const ScheduleOptions& method) {
+                    const ScheduleOptions& method,
+                    int num_maps,
+                    double max_depth_error) {
   const std::vector<RenderedView> views =
       RenderViews(MakeScene(scene, size), 3);
   const auto backend = MakeCpuBackend(target, 2);
-  const HypothesisMap map = EstimateScene(backend.get(), views, method, 1)[0];
-  ExpectSound(map, views[0].camera);
-  const MapErrors errors = MeasureErrors(map, views[0]);
-  EXPECT_LT(errors.depth, kMaxDepthError / size.width)
+  const std::vector<HypothesisMap> maps =
+      EstimateScene(backend.get(), views, method, num_maps);
+  MapErrors mean = {0, 0};
+  for (int i = 0; i < num_maps; ++i) {
+    ExpectSound(maps[i], views[i].camera);
+    const MapErrors errors = MeasureErrors(maps[i], views[i]);
+    mean.depth += errors.depth / num_maps;
+    mean.normal += errors.normal / num_maps;
+  }
+  EXPECT_LT(mean.depth, max_depth_error / size.width)
       << target << ", " << scene;
-  EXPECT_LT(errors.normal, kMaxNormalError) << target << ", " << scene;
+  EXPECT_LT(mean.normal, kMaxNormalError) << target << ", " << scene;
   testing::Test::RecordProperty("depth_error_ppm",
-                                static_cast<int>(1e6 * errors.depth));
+                                static_cast<int>(1e6 * mean.depth));
   testing::Test::RecordProperty("normal_error_millidegrees",
-                                static_cast<int>(1e3 * errors.normal));
+                                static_cast<int>(1e3 * mean.normal));
 }
 
 std::vector<std::string> SimdTargets() {
@@ -72,10 +81,15 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST_P(EverySceneOnEveryTarget, NespWithGeometricPassesIsAccurate) {
   const auto& [scene, target] = GetParam();
-  ExpectAccurate(target, scene, Size(160, 120, 7), Method("nesp", 2));
+  ExpectAccurate(
+      target, scene, Size(160, 120, 7), Method("nesp", 2), 1, kMaxDepthError);
 }
 
-// Small enough for the readable target and for emulators.
+// Small enough for the readable target and for emulators. One map of so few
+// pixels depends on the random numbers too much: over 30 seeds the error of the
+// first view was 0.14 to 0.20, the mean of all five 0.10 to 0.12 pixels.
+constexpr double kMaxMeanDepthError = 0.13;
+
 class SmallScene : public testing::TestWithParam<CpuTarget> {};
 INSTANTIATE_TEST_SUITE_P(Accuracy,
                          SmallScene,
@@ -83,8 +97,12 @@ INSTANTIATE_TEST_SUITE_P(Accuracy,
                          [](const auto& test) { return test.param.name; });
 
 TEST_P(SmallScene, IsAccurate) {
-  ExpectAccurate(
-      GetParam().name, "tilted_plane", Size(48, 36, 5), Method("nesp", 3));
+  ExpectAccurate(GetParam().name,
+                 "tilted_plane",
+                 Size(48, 36, 5),
+                 Method("nesp", 2),
+                 5,
+                 kMaxMeanDepthError);
 }
 
 }  // namespace
