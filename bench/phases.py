@@ -17,7 +17,7 @@ import subprocess
 import sys
 import tempfile
 
-from run_methods import copy_workspace
+from suite import copy_workspace
 
 MATCHING = ("basic", "prior", "geometric")  # phases that compute matching costs
 
@@ -26,7 +26,7 @@ def run(hpm_mvs, scene, threads, options):
     """The run record and the CPU seconds of the process."""
     with tempfile.TemporaryDirectory(prefix="hpm_phases_") as folder:
         dense = pathlib.Path(folder) / "dense"
-        copy_workspace(scene, dense)
+        copy_workspace(scene, 1, dense)
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
         subprocess.run(
             [hpm_mvs, "patch_match_stereo", "--workspace_path", dense,

@@ -275,7 +275,11 @@ def main():
                             futures[pool.submit(score, args.build, scene, method, seed, options,
                                                 args.keep)] = label
             for future in concurrent.futures.as_completed(futures):
-                record = future.result()
+                try:
+                    record = future.result()
+                except RuntimeError as error:
+                    pool.shutdown(cancel_futures=True)
+                    sys.exit(str(error))
                 record["method"] = futures[future]
                 record["options"] = options
                 data["records"].append(record)

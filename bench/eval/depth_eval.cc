@@ -117,9 +117,8 @@ cv::Mat EdgeMask(const Map& truth) {
       mark(col, row, col, row + 1);
     }
   }
-  cv::dilate(edges,
-             edges,
-             cv::getStructuringElement(cv::MORPH_RECT, cv::Size(5, 5)));
+  cv::dilate(
+      edges, edges, cv::getStructuringElement(cv::MORPH_RECT, cv::Size(5, 5)));
   return edges;
 }
 

@@ -162,8 +162,8 @@ Json TimeMethod(const std::string& method,
   const Camera& camera = problem.photometric.ref.camera;
   ScheduleOptions schedule_options;
   schedule_options.method = method;
-  schedule_options.num_levels =
-      AutomaticLevels(std::max(camera.width, camera.height));
+  schedule_options.num_levels = AutomaticLevels(
+      FindMethod(method), std::max(camera.width, camera.height));
   const Schedule schedule = MakeSchedule(schedule_options);
   std::vector<std::unique_ptr<CudaBackend>> backends;
   for (int i = 0; i < flight; ++i) {
@@ -376,7 +376,7 @@ int Main(int argc, char** argv) {
         "\n| method | sources | in flight | s/image | NCC/px | within 1 "
         "%% | host phases, s/image | card, s/image |\n|---|---|---|---|-"
         "--|---|---|---|\n");
-    for (const char* method : {"hpm", "hpm_fast", "nesp"}) {
+    for (const char* method : {"hpm_plus", "hpm", "nesp"}) {
       for (const int flight : settings.flight) {
         methods.push_back(TimeMethod(method, problem, settings.images, flight));
       }

@@ -5,7 +5,10 @@ library_sources=(
   src/base/error.cc
   src/core/sampling_pattern.cc
   src/engine/estimator.cc
+  src/engine/local_planes.cc
+  src/engine/method.cc
   src/engine/mine_regions.cc
+  src/engine/plane_evidence.cc
   src/engine/schedule.cc
   src/engine/visit_params.cc
   src/image/inverse_depth_map.cc

@@ -39,14 +39,14 @@ ProblemOptions MakeProblemOptions(const ControllerOptions& options) {
 
 // The largest image of the workspace decides for all, so that all have the same
 // stages, whichever of them this run computes.
-int LevelsOf(const Workspace& workspace) {
+int LevelsOf(const Method& method, const Workspace& workspace) {
   int side = 1;
   for (int image = 0; image < workspace.num_images(); ++image) {
     if (!workspace.usable(image)) continue;
     const Camera& camera = workspace.camera(image);
     side = std::max({side, camera.width, camera.height});
   }
-  return AutomaticLevels(side);
+  return AutomaticLevels(method, side);
 }
 
 // Work of a stage of an image: iterations times pixels.
@@ -108,7 +108,8 @@ RunSummary PatchMatchController::Run() {
        fmt::format("Configuration has {} problems...", problems.size()));
 
   if (options_.hpm.num_levels <= 0) {
-    options_.hpm.num_levels = LevelsOf(workspace);
+    options_.hpm.num_levels =
+        LevelsOf(FindMethod(options_.hpm.method), workspace);
   }
   const Schedule schedule = MakeSchedule(MakeScheduleOptions(options_));
   const StagePlan plan(workspace, problems, schedule, options_);

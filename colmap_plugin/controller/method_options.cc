@@ -6,7 +6,7 @@ namespace hpm {
 
 MethodParams MakeMethodParams(const ControllerOptions& options) {
   const PatchMatchStereoOptions& colmap = options.patch_match;
-  MethodParams params;
+  MethodParams params = DefaultParams(FindMethod(options.hpm.method));
   params.patch_radius = colmap.window_radius;
   params.sigma_spatial = static_cast<float>(
       colmap.sigma_spatial > 0 ? colmap.sigma_spatial
@@ -14,25 +14,25 @@ MethodParams MakeMethodParams(const ControllerOptions& options) {
   params.num_view_draws = colmap.num_samples;
   params.geom_weight = static_cast<float>(options.hpm.geom_weight);
   params.geom_max_error = static_cast<float>(options.hpm.geom_max_error);
-  params.max_drawn_views = options.hpm.max_views;
+  if (options.hpm.max_views > 0) params.max_drawn_views = options.hpm.max_views;
   params.region_max_gradient = static_cast<float>(options.hpm.weak_gradient);
   return params;
 }
 
 ScheduleOptions MakeScheduleOptions(const ControllerOptions& options) {
-  return {
-      options.hpm.method,
-      options.hpm.num_iterations,
-      options.hpm.num_geom_iterations,
-      options.patch_match.geom_consistency ? options.hpm.num_geom_passes : 0,
-      options.hpm.num_levels,
-      options.hpm.num_fine_iterations,
-      options.hpm.num_fine_geom_passes,
-      options.hpm.prior == "regions",
-      options.hpm.half_search < 0
-          ? HalfSearch::kAuto
-          : (options.hpm.half_search == 0 ? HalfSearch::kOff
-                                          : HalfSearch::kOn)};
+  const HpmOptions& hpm = options.hpm;
+  const auto own_if_none = [](int given) { return given > 0 ? given : -1; };
+  ScheduleOptions schedule;
+  schedule.method = hpm.method;
+  schedule.num_iterations = own_if_none(hpm.num_iterations);
+  schedule.num_geom_iterations = own_if_none(hpm.num_geom_iterations);
+  schedule.num_geom_passes = options.patch_match.geom_consistency
+                                 ? own_if_none(hpm.num_geom_passes)
+                                 : 0;
+  schedule.num_levels = hpm.num_levels;
+  schedule.num_fine_iterations = hpm.num_fine_iterations;
+  schedule.num_fine_geom_passes = own_if_none(hpm.num_fine_geom_passes);
+  return schedule;
 }
 
 FilterParams MakeFilterParams(const PatchMatchStereoOptions& options,

@@ -41,25 +41,23 @@ struct PatchMatchStereoOptions {
 
 // "--Hpm.*": what COLMAP does not have.
 struct HpmOptions {
-  std::string method = "hpm";    // see src/engine/schedule.h
-  std::string quality = "high";  // see colmap_plugin/tool/quality.h
-  std::string device = "auto";   // auto, cpu or cuda
+  std::string method = "hpm_plus";  // see src/engine/method.h
+  std::string quality = "high";     // see colmap_plugin/tool/quality.h
+  std::string device = "auto";      // auto, cpu or cuda
   int gpu_images = -1;  // in flight per entry of gpu_index; -1: by memory
   std::string cpu_target =
       "auto";  // auto, scalar, or a SIMD target of this machine
-  int num_iterations =
-      2;  // red/black iterations of a photometric or prior pass
-  int num_geom_iterations = 1;  // of a geometric pass
-  int num_geom_passes = 3;
-  int num_fine_iterations = 0;  // the same at levels finer than the coarsest
-  int num_fine_geom_passes = 1;
-  int half_search = -1;  // of the coarsest level: 0, 1 or -1, by the schedule
-  int max_views = 4;     // source views that judge a pixel in a visit
-  std::string prior = "regions";  // of hpm: regions, or the paper's triangles
-  double weak_gradient = 2;       // grey levels per pixel
-  double geom_weight = 0.1;       // lambda of the geometric term
-  double geom_max_error = 5;      // pixels, cap of the geometric term
-  int num_levels = -1;     // levels of the prior hierarchy; -1: by image size
+  // -1: the method's own.
+  int num_iterations = -1;       // of a photometric or prior pass
+  int num_geom_iterations = -1;  // of a geometric pass
+  int num_geom_passes = -1;
+  int num_fine_iterations = -1;  // the same at levels finer than the coarsest
+  int num_fine_geom_passes = -1;
+  int max_views = -1;           // source views that judge a pixel in a visit
+  double weak_gradient = 1.4f;  // grey levels per pixel
+  double geom_weight = 0.1;     // lambda of the geometric term
+  double geom_max_error = 5;    // pixels, cap of the geometric term
+  int num_levels = -1;     // of the hierarchy; -1: by method and image size
   bool previews = false;   // colour pictures of the maps in stereo/previews
   bool overwrite = false;  // recompute maps that are complete
 };

@@ -14,7 +14,7 @@ namespace hpm {
 namespace {
 
 // Raise when the same options give other maps.
-constexpr int kAlgorithmVersion = 5;
+constexpr int kAlgorithmVersion = 6;
 
 std::vector<Stage> MakeStages(const Schedule& schedule) {
   std::vector<Stage> stages;
@@ -61,6 +61,7 @@ void AddMethod(const MethodParams& params, Fingerprint* hash) {
       .AddInt(params.max_drawn_views);
   for (const float v : {params.sigma_spatial,
                         params.sigma_color,
+                        params.cut_color,
                         params.depth_perturbation,
                         params.normal_perturbation,
                         params.same_plane_bound,
@@ -100,7 +101,12 @@ std::string OwnFingerprint(const Workspace& workspace,
     hash.AddInt(static_cast<int>(pass.kind)).AddInt(pass.num_iterations);
     hash.AddInt(pass.id).AddInt(pass.level);
     hash.AddInt(pass.max_candidates).AddInt(pass.max_drawn_views);
-    hash.AddInt(pass.half).AddInt(pass.few_views);
+    hash.AddInt(pass.half).AddInt(pass.few_views).AddInt(pass.fit_planes);
+    hash.AddInt(pass.ask_all_views).AddInt(pass.search_near);
+    hash.AddInt(static_cast<int>(pass.start));
+    hash.AddInt(static_cast<int>(pass.regions));
+    if (pass.start == StartFrom::kMissing)
+      hash.AddDouble(params.region_max_gradient);
   }
   if (stage.spec.geometric) {
     hash.AddDouble(params.geom_weight).AddDouble(params.geom_max_error);

@@ -96,7 +96,10 @@ class Interpreter {
     CarryOver("PatchMatchStereo.geom_consistency_max_cost",
               "Hpm.geom_max_error");
     for (const Quality& quality : Qualities()) {
-      if (quality.name != options.hpm.quality) continue;
+      if (quality.name != options.hpm.quality ||
+          options.hpm.method != HpmOptions().method) {
+        continue;  // the paper's methods have the paper's effort
+      }
       for (const auto& [name, value] : quality.settings) {
         if (given_.count(name)) continue;
         ParseValue(value, FindOption(name)->member(&result_->options));

@@ -7,22 +7,23 @@ Quality MakeQuality(const std::string& name,
                     int num_iterations,
                     int num_geom_passes,
                     int num_fine_iterations,
-                    int half_search) {
+                    int num_fine_geom_passes) {
   return {name,
           {{"Hpm.num_iterations", std::to_string(num_iterations)},
            {"Hpm.num_geom_passes", std::to_string(num_geom_passes)},
            {"Hpm.num_fine_iterations", std::to_string(num_fine_iterations)},
-           {"Hpm.half_search", std::to_string(half_search)}}};
+           {"Hpm.num_fine_geom_passes", std::to_string(num_fine_geom_passes)}}};
 }
 
 }  // namespace
 
+// high: each method's own numbers.
 const std::vector<Quality>& Qualities() {
   static const std::vector<Quality> qualities = {
-      MakeQuality("low", 1, 2, 0, -1),
-      MakeQuality("medium", 2, 2, 0, -1),
-      MakeQuality("high", 2, 3, 0, -1),
-      MakeQuality("extreme", 3, 4, 1, 0)};
+      MakeQuality("low", 2, 2, 0, 1),
+      MakeQuality("medium", 2, 2, 1, 1),
+      {"high", {}},
+      MakeQuality("extreme", 3, 4, 3, 2)};
   return qualities;
 }
 

@@ -42,10 +42,11 @@ HPM_HD uint32_t MostVoted(uint32_t views,
   return views;
 }
 
-// Views worth asking, with the votes of the neighbours: those that the pixel
-// itself or two of its neighbours trusted, and one more in turn, so that a view
-// can come back; with `few_views` the most voted of those that the pixel has
-// just trusted. One at least.
+// Views worth asking, with the votes of the neighbours: with `ask_all_views`,
+// as the paper does, all; else those that the pixel itself or two of its
+// neighbours trusted, and one more in turn, so that a view can come back; with
+// `few_views` the most voted of those that the pixel has just trusted. One at
+// least.
 HPM_HD void ChooseViews(const VisitParams& params,
                         const SamplingPattern& pattern,
                         const PixelState& state,
@@ -53,7 +54,9 @@ HPM_HD void ChooseViews(const VisitParams& params,
                         int col,
                         int row,
                         Candidates* candidates) {
-  uint32_t trusted = state.masks[row * state.width + col];
+  uint32_t trusted = params.ask_all_views
+                         ? AllViews(params.num_views)
+                         : state.masks[row * state.width + col];
   uint32_t once = trusted;
   uint32_t votes[kMaxViews] = {};
   int num_voters = 0;

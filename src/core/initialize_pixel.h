@@ -11,9 +11,17 @@ enum class StartFrom {
   kRandom,   // random depth and normal
   kStored,   // the stored hypothesis at its stored cost: nothing to do
   kCurrent,  // the stored hypothesis
+  kMissing,  // as kStored; a random one where none is stored
+  kScore,    // the stored hypothesis in all views; nothing where there is none
   kPrior,    // the prior, slightly perturbed, where there is one and the stored
              // cost is not convincing; else the stored hypothesis
 };
+
+// Whether the start computes anything at a pixel with this stored hypothesis.
+HPM_HD bool StartsAt(StartFrom start, const Plane& stored) {
+  if (start == StartFrom::kMissing) return !(stored.distance > 0);
+  return start != StartFrom::kScore || stored.distance > 0;
+}
 
 constexpr float kConvincingCost = 0.1f;
 constexpr float kPriorDepthSpread = 0.06f;        // relative
@@ -57,8 +65,11 @@ HPM_HD uint32_t ViewsToAsk(const VisitParams& params,
                            StartFrom start,
                            int col,
                            int row) {
-  const uint32_t all = (1u << (params.num_views - 1)) * 2u - 1u;
-  if (start != StartFrom::kCurrent || (col + row) % 2 == 0) return all;
+  const uint32_t all = AllViews(params.num_views);
+  if (start != StartFrom::kCurrent || params.ask_all_views ||
+      (col + row) % 2 == 0) {
+    return all;
+  }
   const int at = row * state.width + col;
   uint32_t views = 0;
   if (row > 0) views |= state.masks[at - state.width];
@@ -80,6 +91,7 @@ HPM_HD void InitializePixel(const VisitParams& params,
   const Vec3f ray =
       RayAt(params.ref, static_cast<float>(col), static_cast<float>(row));
   Plane plane = state.planes[at];
+  if (!StartsAt(start, plane)) return;
   const bool has_plane = plane.distance > 0;
   if (start == StartFrom::kPrior && state.priors != nullptr &&
       state.priors[at].distance > 0 &&

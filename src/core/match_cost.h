@@ -48,7 +48,7 @@ HPM_HD PatchShape MakePatchShape(int radius,
     }
   }
   shape.color_falloff = 1 / (2 * sigma_color * sigma_color);
-  shape.color_cut = 1 / (2 * cut_color * cut_color);
+  shape.color_cut = cut_color > 0 ? 1 / (2 * cut_color * cut_color) : 0;
   return shape;
 }
 

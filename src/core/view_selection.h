@@ -20,6 +20,11 @@ struct ViewWeights {
   uint32_t mask;
 };
 
+// Bit j: view j, for all of them.
+HPM_HD uint32_t AllViews(int num_views) {
+  return (1u << (num_views - 1)) * 2u - 1u;
+}
+
 // A cost below it speaks for a view; tightens with the iterations.
 HPM_HD float GoodCost(int iteration) {
   return 0.8f * expf(-static_cast<float>(iteration * iteration) / 90.0f);

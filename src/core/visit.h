@@ -42,7 +42,8 @@ struct VisitParams {
   int max_candidates;   // regions that a visit looks into
   // Refinement without hypotheses from the whole depth range.
   bool search_near;
-  bool few_views;  // see ChooseViews()
+  bool ask_all_views;  // see ChooseViews()
+  bool few_views;
 };
 
 // k of the best-k mean at initialisation (paper section 3).

@@ -67,6 +67,8 @@ class CpuBackend : public Backend {
     for (int color = 0; pass.start != StartFrom::kStored && color < 2;
          ++color) {
       HalfSweep(state, color, control, [&](int col, int row) {
+        const size_t at = static_cast<size_t>(row) * state.width + col;
+        if (!StartsAt(pass.start, state.planes[at])) return uint64_t{0};
         const CpuPixelCost cost = CostAt(col, row);
         Rng rng(start_key, col, row);
         InitializePixel(params, state, pass.start, cost, &rng, col, row);

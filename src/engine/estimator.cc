@@ -1,11 +1,18 @@
 #include "src/engine/estimator.h"
 
+#include "src/engine/local_planes.h"
 #include "src/engine/mine_regions.h"
 #include "src/engine/phase_timer.h"
+#include "src/engine/visit_params.h"
 #include "src/prior/build_prior.h"
+#include "src/prior/weak_regions.h"
+
+#include <vector>
 
 namespace hpm {
 namespace {
+
+constexpr float kFitTolerance = 0.5f;  // pixels, see FitLocalPlanes()
 
 const char* PhaseName(PassKind kind) {
   switch (kind) {
@@ -19,16 +26,35 @@ const char* PhaseName(PassKind kind) {
   return "geometric";
 }
 
-// ACMM's detail restoration: what came up from the coarser level stays unless
-// the finer level matches clearly better (specification 12.3).
-void KeepUnlessClearlyBetter(const HypothesisMap& carried, HypothesisMap* map) {
+// Merges what a level found itself with what came up from the coarser one,
+// pixel by pixel. A coarse level knows plain surfaces, a fine one detail: where
+// the fine level searched, it must match clearly worse to lose; elsewhere,
+// clearly better to win (ACMM's detail restoration, specification 12.3).
+void MergeLevels(const HypothesisMap& carried,
+                 const std::vector<bool>& searched,
+                 HypothesisMap* map) {
   constexpr float kClearly = 0.1f;
   for (size_t i = 0; i < map->planes.size(); ++i) {
-    if (map->costs[i] < carried.costs[i] - kClearly) continue;
+    const float margin = searched[i] ? kClearly : -kClearly;
+    if (map->costs[i] < carried.costs[i] + margin) continue;
     map->planes[i] = carried.planes[i];
     map->costs[i] = carried.costs[i];
     map->masks[i] = carried.masks[i];
   }
+}
+
+// Forgets the hypotheses of textured pixels; returns which.
+std::vector<bool> ForgetTextured(const GrayImage& image,
+                                 const MethodParams& params,
+                                 HypothesisMap* map) {
+  const WeakRegions regions = FindWeakRegions(
+      image, params.region_max_gradient, params.region_min_share);
+  std::vector<bool> textured(map->planes.size());
+  for (size_t i = 0; i < textured.size(); ++i) {
+    textured[i] = regions.label[i] == 0;
+    if (textured[i]) map->planes[i].distance = 0;
+  }
+  return textured;
 }
 
 }  // namespace
@@ -46,17 +72,20 @@ void RunStage(Backend* backend,
     PhaseTimer timer(times, "prepare");
     backend->SetViews(views, params);
   }
+  const auto score = [&](StartFrom start, HypothesisMap* scored) {
+    const Pass pass = {
+        PassKind::kBasic, start, 0, stage.passes.front().id, 0, false};
+    backend->Run(pass, schedule.pattern, scored, {control.cancel, nullptr});
+  };
   HypothesisMap carried;
+  std::vector<bool> searched;
   if (stage.from_coarser) {
     PhaseTimer timer(times, "basic");
-    const Pass cost_only = {PassKind::kBasic,
-                            StartFrom::kCurrent,
-                            0,
-                            stage.passes.front().id,
-                            0,
-                            false};
-    backend->Run(cost_only, schedule.pattern, map, {control.cancel, nullptr});
+    score(StartFrom::kCurrent, map);
     carried = *map;
+    searched.assign(map->planes.size(), false);
+    if (stage.passes.front().start == StartFrom::kMissing)
+      searched = ForgetTextured(*views.ref.image, params, map);
   }
   const double num_passes = static_cast<double>(stage.passes.size());
   for (size_t i = 0; i < stage.passes.size(); ++i) {
@@ -82,14 +111,23 @@ void RunStage(Backend* backend,
     }
     if (pass.regions != RegionPriors::kNone) {
       PhaseTimer timer(times, "build prior");
-      map->priors = MineRegions(views, params, *map, pass.id);
+      map->priors =
+          MineRegions(views, params, *map, pass.id, [&](HypothesisMap* scored) {
+            score(StartFrom::kScore, scored);
+          });
     }
     {
       PhaseTimer timer(times, PhaseName(pass.kind));
       backend->Run(pass, schedule.pattern, map, pass_control);
     }
-    if (stage.from_coarser && pass.kind == PassKind::kBasic) {
-      KeepUnlessClearlyBetter(carried, map);
+    if (stage.from_coarser && pass.kind == PassKind::kBasic)
+      MergeLevels(carried, searched, map);
+    if (pass.fit_planes) {
+      PhaseTimer timer(times, "fit planes");
+      FitLocalPlanes(views.ref.camera,
+                     *views.ref.image,
+                     kFitTolerance / Parallax(views),
+                     map);
     }
     map->priors = std::vector<Plane>();  // gives the memory back, {} would not
     map->prior_level = 0;

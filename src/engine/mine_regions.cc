@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -69,20 +70,21 @@ int CountAgreeing(const std::vector<Witness>& witnesses,
   return count;
 }
 
-// Pixels of a lattice that at least `needed` views agree on, row by row.
+// The pixels that `is_wanted(col, row)` and at least `needed` views agree on,
+// row by row.
+template <class IsWanted>
 std::vector<ReliablePoint> ReliablePoints(const std::vector<Witness>& witnesses,
                                           const Camera& ref,
                                           float max_error,
                                           int needed,
-                                          const HypothesisMap& map) {
-  const int step = LatticeStep(map);
-  const int num_rows = (map.height + step - 1) / step;
-  std::vector<std::vector<ReliablePoint>> of_row(num_rows);
+                                          const HypothesisMap& map,
+                                          const IsWanted& is_wanted) {
+  std::vector<std::vector<ReliablePoint>> of_row(map.height);
   tbb::parallel_for(
-      tbb::blocked_range<int>(0, num_rows), [&](const auto& rows) {
-        for (int i = rows.begin(); i < rows.end(); ++i) {
-          const int row = i * step;
-          for (int col = 0; col < map.width; col += step) {
+      tbb::blocked_range<int>(0, map.height), [&](const auto& rows) {
+        for (int row = rows.begin(); row < rows.end(); ++row) {
+          for (int col = 0; col < map.width; ++col) {
+            if (!is_wanted(col, row)) continue;
             const Plane& plane =
                 map.planes[static_cast<size_t>(row) * map.width + col];
             if (!(plane.distance > 0)) continue;
@@ -94,7 +96,8 @@ std::vector<ReliablePoint> ReliablePoints(const std::vector<Witness>& witnesses,
                                             static_cast<float>(row),
                                             max_error,
                                             &inverse_depth);
-            if (count >= needed) of_row[i].push_back({col, row, inverse_depth});
+            if (count >= needed)
+              of_row[row].push_back({col, row, inverse_depth});
           }
         }
       });
@@ -104,12 +107,58 @@ std::vector<ReliablePoint> ReliablePoints(const std::vector<Witness>& witnesses,
   return points;
 }
 
+bool IsRim(const WeakRegions& regions, int col, int row) {
+  if (regions.At(col, row) > 0) return false;
+  bool near = false;
+  regions.ForEachNear(col, row, kRimWidth, [&](int) { near = true; });
+  return near;
+}
+
+// The plane of densest support around the pixel whose depth there is allowed;
+// null if there is none.
+const Plane* NearestPlane(const RegionPlanes& planes,
+                          int label,
+                          const ViewSet& views,
+                          int col,
+                          int row) {
+  const RegionPlane* best = nullptr;
+  const size_t cell = planes.CellAt(col, row);
+  for (const RegionPlane& candidate : planes.of_region[label]) {
+    if (best != nullptr && candidate.nearness[cell] <= best->nearness[cell])
+      continue;
+    const float z = DepthAt(views.ref.camera,
+                            candidate.plane,
+                            static_cast<float>(col),
+                            static_cast<float>(row));
+    if (z >= views.depth_min && z <= views.depth_max) best = &candidate;
+  }
+  return best == nullptr ? nullptr : &best->plane;
+}
+
 }  // namespace
+
+// Numbers from the share of true planes among the candidates of four rendered
+// scenes (docs/algorithm.md).
+bool IsBelievable(const RegionPlane& plane, const PlaneEvidence& evidence) {
+  constexpr double kDistinct = 0.01, kContradicted = -0.01;  // cost
+  constexpr double kMinSpread = 0.05;
+  constexpr double kMinScore = 0.25, kBehindWeight = 2, kInsideWeight = 0.3;
+  constexpr double kMostOfInside = 0.5, kMaxBehind = 0.3;
+  if (evidence.num_pixels == 0 || evidence.distinctness < kContradicted)
+    return false;
+  if (evidence.distinctness >= kDistinct) return true;
+  const double score = plane.rim_on - kBehindWeight * plane.rim_behind +
+                       kInsideWeight * plane.inside;
+  return plane.spread >= kMinSpread &&
+         (score >= kMinScore ||
+          (plane.inside >= kMostOfInside && plane.rim_behind < kMaxBehind));
+}
 
 std::vector<Plane> MineRegions(const ViewSet& views,
                                const MethodParams& params,
                                const HypothesisMap& map,
-                               uint64_t key) {
+                               uint64_t key,
+                               const ScoreHypotheses& score) {
   const std::vector<Witness> witnesses = WitnessesOf(views);
   if (witnesses.empty() || !(params.region_max_gradient > 0)) return {};
   const WeakRegions regions = FindWeakRegions(
@@ -117,14 +166,46 @@ std::vector<Plane> MineRegions(const ViewSet& views,
   if (regions.num_regions == 0) return {};
   const int needed = std::min(params.region_min_consistent,
                               static_cast<int>(witnesses.size()));
-  return MakeRegionPlanes(
+  const int step = LatticeStep(map);
+  const auto reliable = [&](const auto& is_wanted) {
+    return ReliablePoints(witnesses,
+                          views.ref.camera,
+                          params.region_max_error,
+                          needed,
+                          map,
+                          is_wanted);
+  };
+  RegionPlanes planes = FindRegionPlanes(
       regions,
       views.ref.camera,
-      ReliablePoints(
-          witnesses, views.ref.camera, params.region_max_error, needed, map),
+      reliable([&](int col, int row) {
+        return row % step == 0 && col % step == 0 && regions.At(col, row) > 0;
+      }),
+      reliable([&](int col, int row) { return IsRim(regions, col, row); }),
+      step,
       params.region_max_residual / Parallax(views),
-      {views.depth_min, views.depth_max},
       CombineBits(views.random_key, key));
+  const auto evidence = FindEvidence(views, regions, planes, step, score);
+  for (size_t label = 1; label < planes.of_region.size(); ++label) {
+    std::vector<RegionPlane> believed;
+    for (size_t k = 0; k < planes.of_region[label].size(); ++k) {
+      RegionPlane& plane = planes.of_region[label][k];
+      if (IsBelievable(plane, evidence[label][k]))
+        believed.push_back(std::move(plane));
+    }
+    planes.of_region[label] = std::move(believed);
+  }
+  std::vector<Plane> result(map.planes.size(), Plane{{0, 0, 0}, 0});
+  for (int row = 0; row < map.height; ++row) {
+    for (int col = 0; col < map.width; ++col) {
+      const int label = regions.At(col, row);
+      if (label == 0) continue;
+      const Plane* plane = NearestPlane(planes, label, views, col, row);
+      if (plane != nullptr)
+        result[static_cast<size_t>(row) * map.width + col] = *plane;
+    }
+  }
+  return result;
 }
 
 }  // namespace hpm

@@ -1,8 +1,10 @@
 // Priors for the regions of the reference image without texture, mined from the
-// points on which the views agree.
+// points on which the views agree. A plane must have evidence of its own: all
+// views that follow a prior confirm each other, right or wrong.
 #pragma once
 
 #include "src/engine/pass.h"
+#include "src/engine/plane_evidence.h"
 #include "src/engine/view.h"
 #include "src/image/hypothesis_map.h"
 
@@ -16,6 +18,13 @@ namespace hpm {
 std::vector<Plane> MineRegions(const ViewSet& views,
                                const MethodParams& params,
                                const HypothesisMap& map,
-                               uint64_t key);
+                               uint64_t key,
+                               const ScoreHypotheses& score);
+
+// Whether a candidate may lead its region. Either the images match better on it
+// than beside it; or they do not contradict it and its points say so: they are
+// no line, and much of the rim lies on it and little behind it, or it explains
+// most of the inside.
+bool IsBelievable(const RegionPlane& plane, const PlaneEvidence& evidence);
 
 }  // namespace hpm

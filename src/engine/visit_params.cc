@@ -4,14 +4,16 @@
 
 namespace hpm {
 
+float Parallax(const View& ref, const View& src) {
+  const Vec3f baseline =
+      src.camera.R * (Center(ref.camera) - Center(src.camera));
+  return std::max(src.camera.fx, src.camera.fy) * Norm(baseline);
+}
+
 float Parallax(const ViewSet& views) {
   float parallax = 0;
-  for (const View& src : views.srcs) {
-    const Vec3f baseline =
-        src.camera.R * (Center(views.ref.camera) - Center(src.camera));
-    parallax = std::max(
-        parallax, std::max(src.camera.fx, src.camera.fy) * Norm(baseline));
-  }
+  for (const View& src : views.srcs)
+    parallax = std::max(parallax, Parallax(views.ref, src));
   return parallax;
 }
 
@@ -41,7 +43,8 @@ VisitParams ForPass(VisitParams visit,
                     const MethodParams& params,
                     const Pass& pass) {
   visit.geometric = pass.kind == PassKind::kGeometric;
-  visit.search_near = visit.geometric;
+  visit.search_near = pass.search_near;
+  visit.ask_all_views = pass.ask_all_views;
   visit.few_views = pass.few_views;
   visit.max_candidates = pass.max_candidates;
   visit.max_drawn_views = std::min(visit.max_drawn_views, pass.max_drawn_views);

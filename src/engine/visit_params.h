@@ -13,6 +13,7 @@ VisitParams MakeVisitParams(const ViewSet& views, const MethodParams& params);
 // Pixels that a source position moves per unit of -1/z of the plane, about: the
 // largest focal length times baseline.
 float Parallax(const ViewSet& views);
+float Parallax(const View& ref, const View& src);
 
 // The same for a pass of this kind.
 VisitParams ForPass(VisitParams visit,

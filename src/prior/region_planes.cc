@@ -5,20 +5,25 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <utility>
 
 #include <Eigen/Dense>
+#include <Eigen/Eigenvalues>
 #include <opencv2/imgproc.hpp>
 
 namespace hpm {
 namespace {
 
 constexpr int kMaxPlanes = 4;
-constexpr int kMinPoints = 50;
+constexpr int kMinPoints = 20;
 constexpr double kMinSupport = 0.08;  // share of a region's reliable points
 constexpr int kNumDraws = 300;
 constexpr int kNumRefits = 3;
 constexpr size_t kMaxPoints = 4000;  // used of a region
-constexpr int kCellsPerSide = 100;   // of the grid in which support is counted
+// A candidate has at least so much of the inside or of the rim.
+constexpr double kMinInside = 0.1, kMinRim = 0.15;
+constexpr int kCellsPerSide = 100;  // of the grid in which support is counted
 constexpr double kNearCells = 4, kFarCells = 16;  // blur of the support
 constexpr float kFarWeight = 1e-3f, kAnywhereWeight = 1e-6f;
 
@@ -30,9 +35,13 @@ struct SupportedPlane {
   std::vector<ReliablePoint> support;
 };
 
+// 1/z by which the plane lies in front of the point.
+double InFront(const ImagePlane& plane, const ReliablePoint& p) {
+  return plane.x() * p.col + plane.y() * p.row + plane.z() - p.inverse_depth;
+}
+
 double Residual(const ImagePlane& plane, const ReliablePoint& p) {
-  return std::abs(plane.x() * p.col + plane.y() * p.row + plane.z() -
-                  p.inverse_depth);
+  return std::abs(InFront(plane, p));
 }
 
 int CountSupport(const ImagePlane& plane,
@@ -143,65 +152,108 @@ Plane ToPlane(const Camera& camera, const ImagePlane& plane) {
   return {(1 / norm) * scaled, 1 / norm};
 }
 
+// At most kMaxPoints of them, by a partial Fisher-Yates shuffle.
+void Thin(std::vector<ReliablePoint>* points, Rng* rng) {
+  for (size_t i = 0; points->size() > kMaxPoints && i < kMaxPoints; ++i) {
+    const size_t j =
+        i + static_cast<size_t>(rng->Uniform() *
+                                static_cast<float>(points->size() - 1 - i));
+    std::swap((*points)[i], (*points)[j]);
+  }
+  points->resize(std::min(points->size(), kMaxPoints));
+}
+
+// Standard deviation along the narrower direction, pixels.
+double Narrowness(const std::vector<ReliablePoint>& points) {
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  for (const ReliablePoint& p : points) mean += Eigen::Vector2d(p.col, p.row);
+  mean /= static_cast<double>(points.size());
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
+  for (const ReliablePoint& p : points) {
+    const Eigen::Vector2d d = Eigen::Vector2d(p.col, p.row) - mean;
+    covariance += d * d.transpose() / static_cast<double>(points.size());
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(
+      covariance, Eigen::EigenvaluesOnly);
+  return std::sqrt(std::max(0.0, solver.eigenvalues()[0]));
+}
+
+// A rim point belongs to every region that is near.
+std::vector<std::vector<ReliablePoint>> RimsOfRegions(
+    const WeakRegions& regions, const std::vector<ReliablePoint>& rim) {
+  std::vector<std::vector<ReliablePoint>> result(regions.num_regions + 1);
+  for (const ReliablePoint& point : rim) {
+    std::set<int> near;
+    regions.ForEachNear(point.col, point.row, kRimWidth, [&](int label) {
+      near.insert(label);
+    });
+    for (const int label : near) result[label].push_back(point);
+  }
+  return result;
+}
+
 }  // namespace
 
-std::vector<Plane> MakeRegionPlanes(const WeakRegions& regions,
-                                    const Camera& camera,
-                                    const std::vector<ReliablePoint>& points,
-                                    float tolerance,
-                                    const PriorRange& range,
-                                    uint64_t random_key) {
-  const int width = regions.width, height = regions.height;
-  std::vector<Plane> result(regions.label.size(), Plane{{0, 0, 0}, 0});
-  std::vector<std::vector<ReliablePoint>> of_region(regions.num_regions + 1);
-  for (const ReliablePoint& point : points) {
-    const int label =
-        regions.label[static_cast<size_t>(point.row) * width + point.col];
-    if (label > 0) of_region[label].push_back(point);
+RegionPlanes FindRegionPlanes(const WeakRegions& regions,
+                              const Camera& camera,
+                              const std::vector<ReliablePoint>& inner,
+                              const std::vector<ReliablePoint>& rim,
+                              int lattice_step,
+                              float tolerance,
+                              uint64_t random_key) {
+  RegionPlanes result;
+  result.cell =
+      std::max(1, std::max(regions.width, regions.height) / kCellsPerSide);
+  result.cell_cols = (regions.width - 1) / result.cell + 1;
+  const int cell_rows = (regions.height - 1) / result.cell + 1;
+  result.of_region.resize(regions.num_regions + 1);
+
+  std::vector<double> area(regions.num_regions + 1, 0);
+  for (const uint16_t label : regions.label) ++area[label];
+  std::vector<std::vector<ReliablePoint>> inner_of(regions.num_regions + 1);
+  for (const ReliablePoint& point : inner) {
+    inner_of[regions.At(point.col, point.row)].push_back(point);
   }
-  const int cell = std::max(1, std::max(width, height) / kCellsPerSide);
-  const int cell_cols = (width - 1) / cell + 1;
-  const int cell_rows = (height - 1) / cell + 1;
-  // Per region: its planes, and in each cell the one of densest support.
-  std::vector<std::vector<Plane>> planes(regions.num_regions + 1);
-  std::vector<cv::Mat> choice(regions.num_regions + 1);
+  std::vector<std::vector<ReliablePoint>> rim_of = RimsOfRegions(regions, rim);
+
   for (int label = 1; label <= regions.num_regions; ++label) {
     Rng rng(random_key, label, 0);
-    std::vector<ReliablePoint>& own = of_region[label];
-    for (size_t i = 0; own.size() > kMaxPoints && i < kMaxPoints; ++i) {
-      // Partial Fisher-Yates shuffle.
-      const size_t j =
-          i + static_cast<size_t>(rng.Uniform() *
-                                  static_cast<float>(own.size() - 1 - i));
-      std::swap(own[i], own[j]);
-    }
-    own.resize(std::min(own.size(), kMaxPoints));
-    const std::vector<SupportedPlane> found = FindPlanes(own, tolerance, &rng);
-    cv::Mat best;
-    choice[label] = cv::Mat::zeros(cell_rows, cell_cols, CV_8U);
-    for (size_t k = 0; k < found.size(); ++k) {
-      planes[label].push_back(ToPlane(camera, found[k].plane));
-      const cv::Mat density =
-          SupportDensity(found[k], cell, cell_cols, cell_rows);
-      if (k == 0) {
-        best = density;
-        continue;
+    std::vector<ReliablePoint>& inside = inner_of[label];
+    std::vector<ReliablePoint>& outside = rim_of[label];
+    const double num_lattice = area[label] / (lattice_step * lattice_step);
+    const auto num_inside = static_cast<double>(inside.size());
+    Thin(&inside, &rng);
+    Thin(&outside, &rng);
+    const double share_of_point =
+        inside.empty()
+            ? 0
+            : num_inside / static_cast<double>(inside.size()) / num_lattice;
+    const auto add = [&](const SupportedPlane& found, bool from_rim) {
+      RegionPlane plane = {};
+      plane.plane = ToPlane(camera, found.plane);
+      plane.from_rim = from_rim;
+      plane.inside =
+          share_of_point * CountSupport(found.plane, inside, tolerance);
+      for (const ReliablePoint& p : outside) {
+        const double in_front = InFront(found.plane, p);
+        plane.rim_on += std::abs(in_front) < tolerance;
+        plane.rim_behind += in_front > 2 * tolerance;
       }
-      choice[label].setTo(static_cast<double>(k), density > best);
-      best = cv::max(best, density);
-    }
-  }
-  for (int row = 0; row < height; ++row) {
-    for (int col = 0; col < width; ++col) {
-      const size_t at = static_cast<size_t>(row) * width + col;
-      const int label = regions.label[at];
-      if (planes[label].empty()) continue;
-      const Plane& plane =
-          planes[label][choice[label].at<uint8_t>(row / cell, col / cell)];
-      const float z = DepthAt(
-          camera, plane, static_cast<float>(col), static_cast<float>(row));
-      if (z >= range.depth_min && z <= range.depth_max) result[at] = plane;
-    }
+      const auto num_outside =
+          std::max(1.0, static_cast<double>(outside.size()));
+      plane.rim_on /= num_outside;
+      plane.rim_behind /= num_outside;
+      if (plane.inside < kMinInside && plane.rim_on < kMinRim) return;
+      plane.spread = Narrowness(found.support) / std::sqrt(area[label]);
+      const cv::Mat density =
+          SupportDensity(found, result.cell, result.cell_cols, cell_rows);
+      plane.nearness.assign(density.begin<float>(), density.end<float>());
+      result.of_region[label].push_back(std::move(plane));
+    };
+    for (const SupportedPlane& found : FindPlanes(inside, tolerance, &rng))
+      add(found, false);
+    for (const SupportedPlane& found : FindPlanes(outside, tolerance, &rng))
+      add(found, true);
   }
   return result;
 }

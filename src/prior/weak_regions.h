@@ -4,6 +4,8 @@
 
 #include "src/image/gray_image.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -13,6 +15,24 @@ struct WeakRegions {
   int width = 0, height = 0;
   int num_regions = 0;
   std::vector<uint16_t> label;  // row-major, 0 = textured, regions from 1
+
+  int At(int col, int row) const {
+    return label[static_cast<size_t>(row) * width + col];
+  }
+
+  // Calls visit(label) for the weak pixels at most `radius` away.
+  template <class Visit>
+  void ForEachNear(int col, int row, int radius, const Visit& visit) const {
+    for (int r = std::max(0, row - radius);
+         r <= std::min(height - 1, row + radius);
+         ++r) {
+      for (int c = std::max(0, col - radius);
+           c <= std::min(width - 1, col + radius);
+           ++c) {
+        if (At(c, r) > 0) visit(At(c, r));
+      }
+    }
+  }
 };
 
 // Pixels whose gradient, after a slight blur against noise, stays under

@@ -22,9 +22,13 @@ class ScriptsTest(unittest.TestCase):
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory(prefix="hpm_bench_test_")
         cls.out = pathlib.Path(cls.folder.name) / "out.json"
-        cls.scene = pathlib.Path(cls.folder.name) / "scene"
+        cls.scene = pathlib.Path(cls.folder.name) / "scenes/scene"
+        cls.scene.parent.mkdir()
         output_of(os.environ["HPM_MAKE_SCENE"], "tilted_plane", cls.scene,
                   "--views", 4, "--width", 64, "--height", 48)
+
+    def setUp(self):
+        self.out.unlink(missing_ok=True)
 
     @classmethod
     def tearDownClass(cls):
@@ -46,13 +50,25 @@ class ScriptsTest(unittest.TestCase):
         self.assertEqual([cell.strip() for cell in row[1:4]], ["64x48", "3", "1"])
         self.assertGreater(int(row[4]), 10)
 
-    def test_run_methods_says_what_went_wrong(self):
-        build = pathlib.Path(HPM_MVS).parents[2]
-        ended = subprocess.run(
-            [sys.executable, BENCH / "run_methods.py", "--build", build, "--scenes", self.scene,
-             "--methods", "nonsense", "--out", self.out],
+    def suite(self, *arguments):
+        return subprocess.run(
+            [sys.executable, BENCH / "suite.py", "--build", pathlib.Path(HPM_MVS).parents[2],
+             "--scenes", self.scene.parent, "--names", "scene", "--out", self.out, *arguments],
             capture_output=True, text=True,
         )
+
+    def test_suite_tells_methods_apart(self):
+        ended = self.suite("--methods", "nesp,acmh", "--seeds", "2", "--reference", "acmh")
+        self.assertEqual(ended.returncode, 0, ended.stderr)
+        self.assertRegex(ended.stdout, r"(?m)^\| scene \| nesp \|")
+        self.assertRegex(ended.stdout, r"(?m)^\| nesp \|.* of \d+ \|")
+        records = json.loads(self.out.read_text())["records"]
+        self.assertEqual(len(records), 4)
+        # What is there is not run again.
+        self.assertNotIn("done", self.suite("--methods", "nesp", "--seeds", "2").stderr)
+
+    def test_suite_says_what_went_wrong(self):
+        ended = self.suite("--methods", "nonsense")
         self.assertEqual(ended.returncode, 1)
         self.assertIn("'nonsense' is not allowed", ended.stderr)
         self.assertNotIn("Traceback", ended.stderr)

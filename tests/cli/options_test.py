@@ -55,7 +55,7 @@ class WrongOptions(CliTest):
             ["--PatchMatchStereo.depth_max=10"],
             ["--Hpm.method=magic"],
             ["--Hpm.cpu_target=abacus"],
-            ["--Hpm.num_iterations=0"],
+            ["--Hpm.num_iterations=-2"],
             ["--workspace_format=OTHER"],
             ["--unknown=1"],
         ):

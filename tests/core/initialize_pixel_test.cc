@@ -107,16 +107,34 @@ TEST_F(InitializePixelTest, CurrentStartKeepsTheStoredPlane) {
   EXPECT_EQ(plane.normal.z, stored_.normal.z);
 }
 
+TEST(StartsAt, MissingAndScoreAreEachOthersComplement) {
+  const Plane none = {{0, 0, 0}, 0}, some = {{0, 0, -1}, 3};
+  EXPECT_TRUE(StartsAt(StartFrom::kMissing, none));
+  EXPECT_FALSE(StartsAt(StartFrom::kMissing, some));
+  EXPECT_FALSE(StartsAt(StartFrom::kScore, none));
+  EXPECT_TRUE(StartsAt(StartFrom::kScore, some));
+  EXPECT_TRUE(StartsAt(StartFrom::kRandom, none));
+  EXPECT_TRUE(StartsAt(StartFrom::kCurrent, none));
+}
+
 class ViewsToAskTest : public testing::Test {
  protected:
   uint32_t Asked(StartFrom start, int col, int row) {
     VisitParams params = {};
     params.num_views = 6;
+    params.ask_all_views = ask_all_;
     const PixelState state = {3, 3, nullptr, nullptr, trusted_.data(), nullptr};
     return ViewsToAsk(params, state, start, col, row);
   }
   std::vector<uint32_t> trusted_ = std::vector<uint32_t>(9, 0);
+  bool ask_all_ = false;
 };
+
+TEST_F(ViewsToAskTest, ThePaperAsksAll) {
+  trusted_[0] = 0b000011;
+  ask_all_ = true;
+  EXPECT_EQ(Asked(StartFrom::kCurrent, 1, 0), 0b111111u);
+}
 
 TEST_F(ViewsToAskTest, TheSecondColourAsksWhatItsNeighboursTrusted) {
   trusted_[0] = 0b000011;  // left

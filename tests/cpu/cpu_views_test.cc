@@ -78,7 +78,9 @@ TEST(CpuPixelCost, ScalarCostIsTheTextbookFormula) {
   const std::vector<RenderedView> rendered =
       RenderViews(MakeScene("tilted_plane", Options()), 1);
   const ViewSet set = AsViewSet(rendered);
-  const CpuViews cpu_views(set, MethodParams());
+  MethodParams params;
+  params.cut_color = 15;
+  const CpuViews cpu_views(set, params);
   std::mt19937 random(5);
   int num_checked = 0;
   for (int row = 0; row < 44; row += 4) {

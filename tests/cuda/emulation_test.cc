@@ -138,13 +138,50 @@ TEST_F(EmulationTest, GivesTheBytesOfTheCpuBackendWithTheLocalPattern) {
                   RunAll(cpu.get(), views_, local));
 }
 
+// A start where nothing is stored, and one that only scores what is.
+TEST_F(EmulationTest, PartialStartsGiveTheBytesOfTheCpuBackend) {
+  const auto forget_every_third = [](HypothesisMap* map) {
+    for (size_t i = 0; i < map->planes.size(); i += 3)
+      map->planes[i].distance = 0;
+  };
+  EmulatedBackend emulated({EmulatedCost::kCore, 3, 16});
+  const auto cpu = MakeCpuBackend("scalar", 2);
+  const CancelToken cancel;
+  std::vector<Result> results;
+  for (Backend* backend : {static_cast<Backend*>(&emulated), cpu.get()}) {
+    HypothesisMap map(views_.ref.camera.width, views_.ref.camera.height);
+    backend->SetViews(views_, MethodParams());
+    const SamplingPattern pattern = MakeSamplingPattern(true, true);
+    backend->Run(kBasic, pattern, &map, {&cancel, nullptr});
+    forget_every_third(&map);
+    backend->Run({PassKind::kBasic, StartFrom::kMissing, 1, 5},
+                 pattern,
+                 &map,
+                 {&cancel, nullptr});
+    for (const Plane& plane : map.planes) ASSERT_GT(plane.distance, 0);
+    forget_every_third(&map);
+    backend->Run({PassKind::kBasic, StartFrom::kScore, 0, 6, 0, false},
+                 pattern,
+                 &map,
+                 {&cancel, nullptr});
+    for (size_t i = 0; i < map.planes.size(); i += 3)
+      ASSERT_EQ(map.planes[i].distance, 0);
+    results.emplace_back();
+    results.back().basic = std::move(map);
+    results.back().num_evaluations = backend->num_cost_evaluations();
+  }
+  ExpectSameBytes(results[0], results[1]);
+}
+
 // A whole method through the engine, priors of two levels upsampled by the
 // backend.
 TEST_F(EmulationTest, AMethodWithPriorsGivesTheBytesOfTheCpuBackend) {
   const ViewSet views = MakeViews("low_texture_wall", 75, 58);
   ScheduleOptions options;
+  options.method = "hpm";
   options.num_levels = 3;
   options.num_iterations = 2;
+  options.num_geom_iterations = 1;
   options.num_geom_passes = 1;
   const Schedule schedule = MakeSchedule(options);
   EmulatedBackend emulated({EmulatedCost::kCore, 3, 16});

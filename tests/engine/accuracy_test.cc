@@ -27,6 +27,8 @@ SceneOptions Size(int width, int height, int num_views) {
 ScheduleOptions Method(const std::string& name, int num_geom_passes) {
   ScheduleOptions options;
   options.method = name;
+  options.num_iterations = 2;
+  options.num_geom_iterations = 1;
   options.num_geom_passes = num_geom_passes;
   return options;
 }

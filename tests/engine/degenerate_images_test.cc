@@ -73,7 +73,7 @@ class EveryMethod : public testing::TestWithParam<std::string> {
 };
 INSTANTIATE_TEST_SUITE_P(Methods,
                          EveryMethod,
-                         testing::Values("acmh", "nesp", "hpm", "hpm_fast"),
+                         testing::Values("acmh", "nesp", "hpm", "hpm_plus"),
                          [](const auto& test) { return test.param; });
 
 TEST_P(EveryMethod, TinyAndNarrowImagesGiveSoundMaps) {

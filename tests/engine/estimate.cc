@@ -92,7 +92,7 @@ std::vector<HypothesisMap> EstimateProblems(Backend* backend,
                views,
                schedule,
                stage,
-               MethodParams(),
+               DefaultParams(FindMethod(options.method)),
                control,
                &next[i],
                &times);

@@ -50,7 +50,24 @@ class MineRegionsTest : public testing::Test {
   }
 
   float TrueDepth(size_t at) const { return rendered_[0].truth.depth[at]; }
-  std::vector<Plane> Mine() { return MineRegions(views_, params_, map_, 7); }
+  // As if the images matched `costs_` worse for each unit of 1/z beside the
+  // depth that is `matching_scale_` times the true one.
+  void Score(HypothesisMap* map) const {
+    for (size_t at = 0; at < map->planes.size(); ++at) {
+      if (!(map->planes[at].distance > 0)) continue;
+      const float z = DepthAt(views_.ref.camera,
+                              map->planes[at],
+                              static_cast<float>(at % kWidth),
+                              static_cast<float>(at / kWidth));
+      map->costs[at] =
+          0.5f +
+          slope_ * std::abs(1 / z - 1 / (matching_scale_ * TrueDepth(at)));
+    }
+  }
+  std::vector<Plane> Mine() {
+    return MineRegions(
+        views_, params_, map_, 7, [this](HypothesisMap* map) { Score(map); });
+  }
 
   // Mean depth of the priors over the truth.
   double MeanScale(const std::vector<Plane>& priors) const {
@@ -73,6 +90,8 @@ class MineRegionsTest : public testing::Test {
   ViewSet views_;
   HypothesisMap map_;
   MethodParams params_;
+  float slope_ = 0;  // the images say nothing
+  float matching_scale_ = 1;
 };
 
 TEST_F(MineRegionsTest, APlaneOnWhichAllAgreeIsFound) {
@@ -107,6 +126,39 @@ TEST_F(MineRegionsTest, ViewsThatDisagreeHaveNoSay) {
   const std::vector<Plane> priors = Mine();
   ASSERT_EQ(priors.size(), map_.planes.size());
   for (const Plane& prior : priors) EXPECT_EQ(prior.distance, 0);
+}
+
+// All depth maps agree on a plane, but the images match better beside it.
+TEST_F(MineRegionsTest, APlaneThatTheImagesContradictIsNotBelieved) {
+  slope_ = 10;
+  EXPECT_GT(Mine()[0].distance, 0);
+  matching_scale_ = 0.8f;
+  for (const Plane& prior : Mine()) EXPECT_EQ(prior.distance, 0);
+}
+
+RegionPlane Candidate(double inside, double rim_on, double rim_behind) {
+  RegionPlane plane = {};
+  plane.inside = inside;
+  plane.rim_on = rim_on;
+  plane.rim_behind = rim_behind;
+  plane.spread = 0.2;
+  return plane;
+}
+
+TEST(IsBelievable, WhereImagesMatchBetterNothingElseIsAsked) {
+  EXPECT_TRUE(IsBelievable(Candidate(0.1, 0, 0.9), {100, 0.05}));
+  EXPECT_FALSE(IsBelievable(Candidate(0.9, 0.9, 0), {100, -0.05}));
+  EXPECT_FALSE(IsBelievable(Candidate(0.9, 0.9, 0), {0, 0}));
+}
+
+TEST(IsBelievable, ElseTheRimOrMostOfTheInsideMustLieOnIt) {
+  EXPECT_TRUE(IsBelievable(Candidate(0, 0.6, 0), {100, 0}));    // a roof
+  EXPECT_TRUE(IsBelievable(Candidate(0.7, 0.1, 0), {100, 0}));  // a wall
+  EXPECT_FALSE(IsBelievable(Candidate(0.2, 0.1, 0), {100, 0}));
+  EXPECT_FALSE(IsBelievable(Candidate(0.2, 0.5, 0.4), {100, 0}));
+  RegionPlane line = Candidate(0.7, 0.6, 0);
+  line.spread = 0.01;
+  EXPECT_FALSE(IsBelievable(line, {100, 0}));
 }
 
 TEST_F(MineRegionsTest, WithoutDepthMapsThereIsNothingToMine) {

@@ -18,7 +18,6 @@ ScheduleOptions Options(const std::string& method, int num_levels = 3) {
   options.num_geom_iterations = 2;
   options.num_geom_passes = 2;
   options.num_levels = num_levels;
-  options.half_search = HalfSearch::kOff;
   return options;
 }
 
@@ -87,7 +86,6 @@ TEST_P(EveryMethod, WithoutGeometricPassesThereAreNoGeometricStages) {
 std::vector<int> PriorLevels(const std::string& method, int num_levels) {
   std::vector<int> levels;
   ScheduleOptions options = Options(method, num_levels);
-  options.region_priors = false;
   const StageSpec first = MakeSchedule(options).stages[0];
   for (const Pass& pass : first.passes) {
     if (pass.kind == PassKind::kPrior) levels.push_back(pass.level);
@@ -105,31 +103,42 @@ TEST(Schedule, HpmFastBuildsTheCoarsestPriorOnly) {
   EXPECT_THAT(PriorLevels("hpm_fast", 1), testing::ElementsAre(0));
 }
 
-TEST(Schedule, HpmMinesRegionsInGeometricPassesAndOthersDoNot) {
-  for (const std::string& method : MethodNames()) {
-    for (const StageSpec& stage : MakeSchedule(Options(method)).stages) {
-      for (const Pass& pass : stage.passes) {
-        EXPECT_EQ(pass.regions != RegionPriors::kNone,
-                  stage.geometric && method.rfind("hpm", 0) == 0)
-            << method;
-      }
+// So that a researcher gets what he asks for by name.
+TEST_P(EveryMethod, OnlyOursDepartsFromThePaper) {
+  const Method& method = FindMethod(GetParam());
+  const bool ours = std::string(method.name) == "hpm_plus";
+  EXPECT_EQ(DefaultParams(method).cut_color > 0, ours);
+  EXPECT_EQ(DefaultParams(method).same_plane_bound > 0, ours);
+  EXPECT_EQ(DefaultParams(method).max_drawn_views < kMaxViews, ours);
+  for (const StageSpec& stage : MakeSchedule(Options(GetParam())).stages) {
+    for (const Pass& pass : stage.passes) {
+      EXPECT_EQ(pass.ask_all_views, !ours);
+      EXPECT_EQ(pass.regions != RegionPriors::kNone, ours && stage.geometric);
+      EXPECT_EQ(pass.search_near, ours && stage.geometric);
+      EXPECT_EQ(pass.few_views, ours && stage.geometric);
+      EXPECT_EQ(pass.max_candidates < kNumRegions, ours && stage.geometric);
+      EXPECT_TRUE(ours || !(pass.half || pass.fit_planes));
     }
   }
 }
 
-TEST(Schedule, WithTrianglesThereAreNoRegions) {
-  ScheduleOptions options = Options("hpm");
-  options.region_priors = false;
-  for (const StageSpec& stage : MakeSchedule(options).stages) {
+TEST(Schedule, ThePapersNumbersAreTheDefault) {
+  ScheduleOptions options;
+  options.method = "hpm";
+  const Schedule schedule = MakeSchedule(options);
+  ASSERT_EQ(schedule.stages.size(), 3u);
+  ASSERT_EQ(schedule.stages[0].passes.size(), 2u);
+  for (const StageSpec& stage : schedule.stages) {
     EXPECT_EQ(stage.level, 0);
-    for (const Pass& pass : stage.passes)
-      EXPECT_EQ(pass.regions, RegionPriors::kNone);
+    for (const Pass& pass : stage.passes) EXPECT_EQ(pass.num_iterations, 3);
   }
 }
 
 TEST(Schedule, RegionsAreMinedOnImagesOfEveryLevel) {
   std::vector<int> levels;
-  for (const StageSpec& stage : MakeSchedule(Options("hpm", 3)).stages) {
+  ScheduleOptions options = Options("hpm_plus");
+  options.num_fine_geom_passes = 1;
+  for (const StageSpec& stage : MakeSchedule(options).stages) {
     levels.push_back(stage.level);
     EXPECT_EQ(stage.from_coarser, !stage.geometric && stage.level < 2);
   }
@@ -137,7 +146,7 @@ TEST(Schedule, RegionsAreMinedOnImagesOfEveryLevel) {
 }
 
 TEST(Schedule, FinerLevelsHaveNumbersOfTheirOwn) {
-  ScheduleOptions options = Options("hpm", 2);
+  ScheduleOptions options = Options("hpm_plus", 2);
   options.num_fine_geom_passes = 3;
   const auto fine_stage = [&options] {
     const Schedule schedule = MakeSchedule(options);
@@ -145,58 +154,38 @@ TEST(Schedule, FinerLevelsHaveNumbersOfTheirOwn) {
     EXPECT_EQ(schedule.stages[0].passes[0].num_iterations, 4);
     return schedule.stages[3];
   };
+  options.num_fine_iterations = 0;
   EXPECT_THAT(fine_stage().passes, testing::IsEmpty());
   options.num_fine_iterations = 2;
   ASSERT_EQ(fine_stage().passes.size(), 1u);
   EXPECT_EQ(fine_stage().passes[0].num_iterations, 2);
   // What came up keeps the cost it has been given.
-  EXPECT_EQ(fine_stage().passes[0].start, StartFrom::kStored);
+  EXPECT_EQ(fine_stage().passes[0].start, StartFrom::kMissing);
 }
 
 TEST(Schedule, WithoutGeometricPassesFinerLevelsMatch) {
-  ScheduleOptions options = Options("hpm", 2);
+  ScheduleOptions options = Options("hpm_plus", 2);
   options.num_geom_passes = 0;
+  options.num_fine_iterations = 0;
   const Schedule schedule = MakeSchedule(options);
   ASSERT_EQ(schedule.stages.size(), 2u);
   ASSERT_EQ(schedule.stages[1].passes.size(), 1u);
   EXPECT_EQ(schedule.stages[1].passes[0].num_iterations, 1);
-  options.method = "hpm_fast";
-  EXPECT_EQ(MakeSchedule(options).stages[0].passes[0].num_iterations,
-            schedule.stages[0].passes[0].num_iterations - 1);
 }
 
-TEST(Schedule, OnlyTheLastPassHasStrongRegionPriors) {
-  const Schedule schedule = MakeSchedule(Options("hpm"));
+TEST(Schedule, OnlyTheVeryLastPassIsStrongAndFitsPlanes) {
+  const Schedule schedule = MakeSchedule(Options("hpm_plus"));
   for (const StageSpec& stage : schedule.stages) {
     for (const Pass& pass : stage.passes) {
-      EXPECT_EQ(pass.regions == RegionPriors::kStrong,
-                &stage == &schedule.stages.back());
+      const bool last = &stage == &schedule.stages.back();
+      EXPECT_EQ(pass.regions == RegionPriors::kStrong, last);
+      EXPECT_EQ(pass.fit_planes, last);
     }
   }
 }
 
-TEST(Schedule, HpmFastTakesFewerPassesAndIterations) {
-  const auto num_stages = [](const std::string& method) {
-    return MakeSchedule(Options(method)).stages.size();
-  };
-  EXPECT_EQ(num_stages("hpm"), 7u);  // three levels
-  EXPECT_EQ(num_stages("hpm_fast"), 6u);
-  const auto num_iterations = [](const std::string& method) {
-    return MakeSchedule(Options(method))
-        .stages.front()
-        .passes.front()
-        .num_iterations;
-  };
-  EXPECT_EQ(num_iterations("hpm_fast"), num_iterations("hpm") - 1);
-  const auto last = [](const std::string& method) {
-    return MakeSchedule(Options(method)).stages.back().passes.back();
-  };
-  EXPECT_LT(last("hpm_fast").max_candidates, last("hpm").max_candidates);
-  EXPECT_TRUE(last("hpm_fast").half);
-}
-
 TEST(Schedule, OnlyTheLastGeometricPassOfALevelVisitsAllPixels) {
-  const Schedule schedule = MakeSchedule(Options("hpm"));
+  const Schedule schedule = MakeSchedule(Options("hpm_plus"));
   for (size_t s = 0; s < schedule.stages.size(); ++s) {
     const StageSpec& stage = schedule.stages[s];
     if (!stage.geometric) continue;
@@ -204,40 +193,6 @@ TEST(Schedule, OnlyTheLastGeometricPassOfALevelVisitsAllPixels) {
                       schedule.stages[s + 1].level < stage.level;
     EXPECT_EQ(stage.passes.back().half, !last) << s;
   }
-  for (const StageSpec& stage : MakeSchedule(Options("nesp")).stages) {
-    for (const Pass& pass : stage.passes) EXPECT_FALSE(pass.half);
-  }
-}
-
-TEST(Schedule, AHalfSearchTakesTheIterationsOfTheCoarsestLevel) {
-  ScheduleOptions options = Options("hpm", 2);
-  options.half_search = HalfSearch::kOn;
-  const std::vector<StageSpec> stages = MakeSchedule(options).stages;
-  EXPECT_EQ(stages.size(), 1 + MakeSchedule(Options("hpm", 2)).stages.size());
-  EXPECT_EQ(stages[0].level, 2);
-  ASSERT_EQ(stages[0].passes.size(), 1u);
-  EXPECT_EQ(stages[0].passes[0].num_iterations, options.num_iterations + 1);
-  EXPECT_EQ(stages[1].level, 1);
-  EXPECT_TRUE(stages[1].from_coarser);
-  EXPECT_TRUE(stages[1].passes.empty());
-  EXPECT_TRUE(stages[2].geometric);
-}
-
-TEST(Schedule, HalfSearchIsForOneLevelAndForHpmFast) {
-  const auto first_level = [](const std::string& method, int num_levels) {
-    ScheduleOptions options = Options(method, num_levels);
-    options.half_search = HalfSearch::kAuto;
-    return MakeSchedule(options).stages[0].level;
-  };
-  EXPECT_EQ(first_level("hpm", 1), 1);
-  EXPECT_EQ(first_level("hpm", 3), 2);
-  EXPECT_EQ(first_level("hpm_fast", 1), 1);
-  EXPECT_EQ(first_level("hpm_fast", 3), 3);
-  EXPECT_EQ(first_level("nesp", 1), 0);
-  ScheduleOptions photometric = Options("hpm", 1);
-  photometric.half_search = HalfSearch::kOn;
-  photometric.num_geom_passes = 0;
-  EXPECT_EQ(MakeSchedule(photometric).stages[0].level, 0);
 }
 
 TEST(Schedule, NespHasNoPriors) {
@@ -258,6 +213,7 @@ TEST(Schedule, AblationRowsSwitchTheSamplingPattern) {
   EXPECT_TRUE(near("esp") && grows("esp"));
   EXPECT_TRUE(!near("nesp") && grows("nesp"));
   EXPECT_TRUE(!near("hpm") && grows("hpm"));
+  EXPECT_TRUE(!near("hpm_plus") && grows("hpm_plus"));
   EXPECT_TRUE(near("hpm_no_nesp") && !grows("hpm_no_nesp"));
 }
 
@@ -275,11 +231,18 @@ TEST(Schedule, UnknownMethodIsAnErrorThatListsTheMethods) {
 }
 
 TEST(AutomaticLevels, FollowTheLongerSide) {
-  EXPECT_EQ(AutomaticLevels(1), 1);
-  EXPECT_EQ(AutomaticLevels(500), 1);
-  EXPECT_EQ(AutomaticLevels(800), 2);
-  EXPECT_EQ(AutomaticLevels(1600), 3);
-  EXPECT_EQ(AutomaticLevels(3200), 4);
+  const Method& paper = FindMethod("hpm");
+  EXPECT_EQ(AutomaticLevels(paper, 1), 1);
+  EXPECT_EQ(AutomaticLevels(paper, 1000), 1);
+  EXPECT_EQ(AutomaticLevels(paper, 1920), 2);
+  EXPECT_EQ(AutomaticLevels(paper, 3200), 3);
+  const Method& plus = FindMethod("hpm_plus");
+  EXPECT_EQ(AutomaticLevels(plus, 1), 1);
+  EXPECT_EQ(AutomaticLevels(plus, 200), 1);
+  EXPECT_EQ(AutomaticLevels(plus, 400), 2);
+  EXPECT_EQ(AutomaticLevels(plus, 1000), 2);
+  EXPECT_EQ(AutomaticLevels(plus, 1600), 3);
+  EXPECT_EQ(AutomaticLevels(plus, 3200), 4);
 }
 
 }  // namespace

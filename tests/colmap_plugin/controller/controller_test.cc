@@ -228,7 +228,7 @@ TEST_F(ControllerTest, ResultsWithoutAFailedSourceAreMadeAgain) {
 // has one source and is nobody's, so that it learns of the gap from itself
 // alone.
 TEST_F(ControllerTest, AGapIsRememberedThroughLevelsAndStages) {
-  options_.hpm.method = "hpm";
+  options_.hpm.method = "hpm_plus";
   options_.hpm.num_levels = 2;
   options_.hpm.num_geom_passes = 2;
   std::string cfg;

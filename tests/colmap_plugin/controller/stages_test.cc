@@ -271,9 +271,6 @@ TEST_F(StagePlanTest, EachOptionChangesTheFingerprintsItConcerns) {
   // Of a source, and of a source's source: they come in with the depth maps.
   EXPECT_EQ(ChangedBy([&] { problems_[1].depth_max = 9; }), geometric);
   EXPECT_EQ(ChangedBy([&] { problems_[0].depth_max = 9; }), (Changed{2, 3}));
-  hpm.method = "hpm";
-  EXPECT_EQ(ChangedBy([&] { hpm.half_search = 1; }), all);
-  hpm.method = "nesp";
   // What cannot change a map.
   EXPECT_EQ(ChangedBy([&] { colmap.num_threads = 7; }), Changed());
   EXPECT_EQ(ChangedBy([&] { colmap.cache_size = 1; }), Changed());

@@ -198,17 +198,15 @@ TEST(ParseOptionsTest, QualitySetsWhatIsNotGiven) {
   const HpmOptions defaults;
   const HpmOptions high = hpm({"--Hpm.quality", "high"});
   EXPECT_EQ(high.num_iterations, defaults.num_iterations);
-  EXPECT_EQ(high.num_geom_passes, defaults.num_geom_passes);
   EXPECT_EQ(high.num_fine_iterations, defaults.num_fine_iterations);
-  EXPECT_EQ(high.half_search, defaults.half_search);
   const HpmOptions low =
       hpm({"--Hpm.quality", "low", "--Hpm.num_geom_passes", "5"});
-  EXPECT_LT(low.num_iterations, defaults.num_iterations);
+  EXPECT_EQ(low.num_fine_iterations, 0);
   EXPECT_EQ(low.num_geom_passes, 5);
-  EXPECT_EQ(hpm({"--Hpm.quality", "extreme"}).half_search, 0);
+  // The paper's methods have the paper's effort.
   EXPECT_EQ(
-      hpm({"--Hpm.quality", "extreme", "--Hpm.half_search", "1"}).half_search,
-      1);
+      hpm({"--Hpm.quality", "low", "--Hpm.method", "hpm"}).num_fine_iterations,
+      -1);
   EXPECT_THAT(Parse({"--Hpm.quality", "best"}).problems, SizeIs(1));
 }
 

@@ -1,0 +1,103 @@
+#include "src/engine/plane_evidence.h"
+
+#include "src/engine/visit_params.h"
+
+#include <algorithm>
+
+namespace hpm {
+namespace {
+
+constexpr float kShift = 2;  // pixels in the median view
+
+// Pixels per unit of -1/z; half the views have more.
+float MedianParallax(const ViewSet& views) {
+  std::vector<float> all;
+  for (const View& src : views.srcs) all.push_back(Parallax(views.ref, src));
+  const auto middle = all.begin() + static_cast<ptrdiff_t>(all.size() / 2);
+  std::nth_element(all.begin(), middle, all.end());
+  return *middle;
+}
+
+// 1/z + shift everywhere.
+Plane Moved(const Plane& plane, float shift) {
+  const Vec3f scaled = (1 / plane.distance) * plane.normal - Vec3f{0, 0, shift};
+  const float norm = Norm(scaled);
+  return {(1 / norm) * scaled, 1 / norm};
+}
+
+bool IsNearestOfItsKind(const std::vector<RegionPlane>& list,
+                        size_t k,
+                        size_t cell) {
+  for (const RegionPlane& other : list) {
+    if (other.from_rim == list[k].from_rim &&
+        other.nearness[cell] > list[k].nearness[cell])
+      return false;
+  }
+  return true;
+}
+
+struct Sums {
+  double at = 0, nearer = 0, farther = 0;
+  int count = 0;
+};
+
+}  // namespace
+
+std::vector<std::vector<PlaneEvidence>> FindEvidence(
+    const ViewSet& views,
+    const WeakRegions& regions,
+    const RegionPlanes& candidates,
+    int lattice_step,
+    const ScoreHypotheses& score) {
+  const auto& of_region = candidates.of_region;
+  std::vector<std::vector<PlaneEvidence>> result(of_region.size());
+  size_t most = 0;
+  for (size_t label = 0; label < of_region.size(); ++label) {
+    result[label].resize(of_region[label].size());
+    most = std::max(most, of_region[label].size());
+  }
+  const float shift = kShift / MedianParallax(views);
+  HypothesisMap map(regions.width, regions.height);
+  // The k-th candidates of all regions together.
+  for (size_t k = 0; k < most; ++k) {
+    std::vector<size_t> pixels;
+    std::vector<int> labels;
+    for (int row = 0; row < regions.height; row += lattice_step) {
+      for (int col = 0; col < regions.width; col += lattice_step) {
+        const int label = regions.At(col, row);
+        if (k >= of_region[label].size() ||
+            !IsNearestOfItsKind(
+                of_region[label], k, candidates.CellAt(col, row))) {
+          continue;
+        }
+        pixels.push_back(static_cast<size_t>(row) * regions.width + col);
+        labels.push_back(label);
+      }
+    }
+    std::vector<Sums> sums(of_region.size());
+    const auto score_at = [&](float moved, double Sums::*sum) {
+      for (size_t i = 0; i < pixels.size(); ++i) {
+        map.planes[pixels[i]] = Moved(of_region[labels[i]][k].plane, moved);
+      }
+      score(&map);
+      for (size_t i = 0; i < pixels.size(); ++i)
+        sums[labels[i]].*sum += map.costs[pixels[i]];
+    };
+    score_at(0, &Sums::at);
+    score_at(shift, &Sums::nearer);
+    score_at(-shift, &Sums::farther);
+    for (size_t i = 0; i < pixels.size(); ++i) {
+      ++sums[labels[i]].count;
+      map.planes[pixels[i]].distance = 0;
+    }
+    for (size_t label = 0; label < sums.size(); ++label) {
+      const Sums& s = sums[label];
+      if (s.count == 0) continue;
+      result[label][k] = {s.count,
+                          (std::min(s.nearer, s.farther) - s.at) / s.count};
+    }
+  }
+  return result;
+}
+
+}  // namespace hpm
