@@ -2,7 +2,7 @@
 """Where the time of a run goes, and how it scales: hpm_mvs over one scene with several
 numbers of threads. Prints a table and writes a JSON that compares across commits.
 
-    bench/phases.py --hpm_mvs build/release/colmap_plugin/tool/hpm_mvs --scene data/room \\
+    bench/phases.py --hpm_mvs build/release/colmap_plugin/tool/hpm_mvs --scene data/workshop \\
         --threads 1 2 --out bench/results/phases.json [-- --Hpm.quality low]
 
 Everything after -- goes to hpm_mvs. Needs nothing but a dense workspace.

@@ -2,11 +2,11 @@
 """Runs methods over scenes and seeds, fuses with COLMAP, scores against ground truth and
 says who is better by more than noise.
 
-    bench/suite.py --build build/release --scenes FOLDER --methods hpm_plus,hpm,nesp \\
+    bench/suite.py --build build/release --scenes data --methods hpm_plus,hpm,nesp \\
         --seeds 3 --reference hpm --out bench/results/suite.json [-- --Hpm.quality low]
 
-FOLDER holds scenes: dense workspaces with gt/depth_maps and, for F1, gt/points.ply. A
-scene's suite.json may name its F1 thresholds (model units), the min_num_pixels of its
+The folder of --scenes holds dense workspaces with gt/depth_maps and, for F1,
+gt/points.ply, or with both in gt.tar.xz. A scene's suite.json may name its F1 thresholds (model units), the min_num_pixels of its
 fusion and which of its images take part; see SceneSettings. Everything after -- goes to
 hpm_mvs. Maps are written unfiltered, so that every pixel counts; COLMAP's fusion does its
 own checks. What --out holds already is not run again, so a second call adds to it.
@@ -34,7 +34,7 @@ class SceneSettings:
     thresholds: list = dataclasses.field(default_factory=lambda: [0.01, 0.02, 0.05])
     min_num_pixels: int = 5
     every: int = 1  # every n-th image takes part
-    # Of the depth shares, the first that the truth is good enough for.
+    # The first of DEPTH_SHARES that the truth is good enough for.
     finest_share: str = "0.5%"
 
 
@@ -74,17 +74,19 @@ def run(command, log):
 def copy_workspace(scene, every, folder):
     """Our own stereo folder; images, model and truth stay where they are."""
     (folder / "stereo").mkdir(parents=True)
-    for part in ("images", "sparse", "gt"):
+    for part in ("images", "sparse"):
         (folder / part).symlink_to((scene / part).resolve())
-    fusion = (scene / "stereo/fusion.cfg").read_text().split("\n")
-    kept = [name for name in fusion if name.strip()][::every]
+    if (scene / "gt").is_dir():
+        (folder / "gt").symlink_to((scene / "gt").resolve())
+    else:
+        subprocess.run(["tar", "-xf", scene / "gt.tar.xz", "-C", folder], check=True)
+    names = (scene / "stereo/fusion.cfg").read_text().split("\n")
+    kept = [name for name in names if name.strip()][::every]
     (folder / "stereo/fusion.cfg").write_text("\n".join(kept) + "\n")
-    problems = [f"{name}\n__auto__, 20\n" for name in kept]
     if every == 1:
         shutil.copyfile(scene / "stereo/patch-match.cfg", folder / "stereo/patch-match.cfg")
     else:
-        others = ", ".join(kept)
-        problems = [f"{name}\n" + ", ".join(n for n in kept if n != name) + "\n" for name in kept]
+        problems = (f"{ref}\n" + ", ".join(n for n in kept if n != ref) + "\n" for ref in kept)
         (folder / "stereo/patch-match.cfg").write_text("".join(problems))
 
 
@@ -102,7 +104,7 @@ def score(build, scene, method, seed, options, keep):
         result = {
             "scene": scene.name, "method": method, "seed": seed, "cpu_seconds": cpu_seconds,
             "costs_per_pixel": record["ncc_evaluations_per_pixel"],
-            "thresholds": settings.thresholds,
+            "thresholds": settings.thresholds, "finest_share": settings.finest_share,
         }
         run([build / "bench/eval_depth", folder, "--json", folder / "depth.json"], log)
         depth = json.loads((folder / "depth.json").read_text())
@@ -110,12 +112,13 @@ def score(build, scene, method, seed, options, keep):
         for part in PARTS:
             result[part] = {share: 100 * depth[part]["within"][i] for share, i in DEPTH_SHARES.items()}
             result[part]["density"] = 100 * depth[part]["density"]
-        if (scene / "gt/points.ply").exists():
+        truth = folder / "gt/points.ply"
+        if truth.exists():
             cloud = folder / "fused.ply"
             run(["colmap", "stereo_fusion", "--workspace_path", folder, "--output_path", cloud,
                  "--StereoFusion.num_threads", 1,
                  "--StereoFusion.min_num_pixels", settings.min_num_pixels], log)
-            run([build / "bench/eval_cloud", cloud, scene / "gt/points.ply", "--json",
+            run([build / "bench/eval_cloud", cloud, truth, "--json",
                  folder / "cloud.json", "--thresholds", ",".join(map(str, settings.thresholds))], log)
             scores = json.loads((folder / "cloud.json").read_text())["scores"]
             for metric in ("f1", "accuracy", "completeness"):
@@ -129,19 +132,15 @@ def score(build, scene, method, seed, options, keep):
 
 def metrics_of(record):
     """Name -> value of all that a person would notice, higher is better."""
-    finest = settings_finest(record)
+    shares = list(DEPTH_SHARES)
     values = {}
     for part in PARTS:
-        for share in list(DEPTH_SHARES)[list(DEPTH_SHARES).index(finest):]:
+        for share in shares[shares.index(record["finest_share"]):]:
             values[f"{part} {share}"] = record[part][share]
     for metric in ("f1", "accuracy", "completeness"):
         for threshold, value in zip(record["thresholds"], record.get(metric, [])):
             values[f"{metric} {threshold:g}"] = value
     return values
-
-
-def settings_finest(record):
-    return record.get("finest_share") or KNOWN_SCENES.get(record["scene"], SceneSettings()).finest_share
 
 
 class Results:
@@ -261,7 +260,8 @@ def main():
     if args.out.exists():
         data = json.loads(args.out.read_text())
     if not args.only_report:
-        scenes = [s for s in sorted(args.scenes.iterdir()) if (s / "gt").is_dir()]
+        scenes = [s for s in sorted(args.scenes.iterdir())
+                  if (s / "gt").is_dir() or (s / "gt.tar.xz").exists()]
         if args.names:
             scenes = [args.scenes / name for name in args.names.split(",")]
         done = {(r["scene"], r["method"], r["seed"]) for r in data["records"]}

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# From a fresh clone to a point cloud of the demo room, measured against its exact
+# From a fresh clone to a point cloud of the demo scene, measured against its exact
 # ground truth. Everything it makes lies in demo_output/.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -12,7 +12,7 @@ out=demo_output
 dense=$out/dense
 rm -rf "$out"
 mkdir -p "$out"
-cp -r data/room "$dense"
+cp -r data/workshop "$dense"
 tar -xf "$dense/gt.tar.xz" -C "$dense"
 
 build/demo/colmap_plugin/tool/hpm_mvs patch_match_stereo \
@@ -30,14 +30,14 @@ build/demo/bench/eval_depth "$dense" --json "$out/depth.json"
 echo
 echo "Points against the ground truth (metres)"
 build/demo/bench/eval_cloud "$out/fused.ply" "$dense/gt/points.ply" --json "$out/cloud.json"
-build/demo/bench/render_cloud "$out/fused.ply" "$dense/sparse" 0003.png "$out/cloud.png" \
+build/demo/bench/render_cloud "$out/fused.ply" "$dense/sparse" 0003.jpg "$out/cloud.png" \
   --point_size 7
 
 cat <<EOF
 
 Look at
   $out/cloud.png                the points, seen from one of the cameras
-  $dense/images/0003.png    the picture taken there
+  $dense/images/0003.jpg    the picture taken there
   $dense/stereo/previews/   depth and normals of every image
   $out/fused.ply                the points
   $out/mesh.ply                 the surface

@@ -50,13 +50,13 @@ grep -E '\[ +OK \] CpuTargets/EveryTarget\..*/neon' "$folder/ctest.log" | sed 's
 emulate "$build/tests/engine/accuracy_test" --gtest_filter='*SmallScene*/neon' | tee "$folder/accuracy.log"
 grep -q '\[ *OK \] .*IsAccurate/neon' "$folder/accuracy.log"
 
-# Three images of the room, matched among themselves, very small.
+# Three images of the demo scene, matched among themselves, very small.
 workspace() { # NAME
   rm -rf "${folder:?}/$1"
   mkdir -p "$folder/$1/stereo"
-  cp -r data/room/images data/room/sparse "$folder/$1"
-  printf '%s\n' 0000.png '0001.png, 0002.png' 0001.png '0000.png, 0002.png' \
-    0002.png '0000.png, 0001.png' >"$folder/$1/stereo/patch-match.cfg"
+  cp -r data/workshop/images data/workshop/sparse "$folder/$1"
+  printf '%s\n' 0000.jpg '0001.jpg, 0002.jpg' 0001.jpg '0000.jpg, 0002.jpg' \
+    0002.jpg '0000.jpg, 0001.jpg' >"$folder/$1/stereo/patch-match.cfg"
 }
 arguments=(patch_match_stereo --Hpm.device cpu --Hpm.cpu_target scalar --PatchMatchStereo.max_image_size 64)
 workspace native

@@ -27,7 +27,7 @@ fi
 colmap=$(realpath "$COLMAP_BUILD/src/exe/colmap")
 
 fail() { echo "FAILED: $*" >&2; exit 1; }
-fresh() { rm -rf "$work/$1" && mkdir -p "$work/$1" && cp -r data/room/{images,sparse,stereo} "$work/$1"; }
+fresh() { rm -rf "$work/$1" && mkdir -p "$work/$1" && cp -r data/workshop/{images,sparse,stereo} "$work/$1"; }
 same_maps() { # FOLDER FOLDER: maps in the first are those in the second, and there are some
   local kind
   for kind in depth_maps normal_maps; do
@@ -56,23 +56,23 @@ echo "ok: $points points"
 
 echo "== failures"
 fresh broken
-echo "no picture" >"$work/broken/images/0003.png"
+echo "no picture" >"$work/broken/images/0003.jpg"
 code=0
 "$colmap" hpm_patch_match_stereo --workspace_path "$work/broken" "${options[@]}" >"$work/broken.log" 2>&1 || code=$?
 ((code == 4)) || fail "exit code $code of hpm_patch_match_stereo with a broken image, expected 4"
 rm -r "$work/broken" && fresh broken
-echo "no picture" >"$work/broken/images/0003.png"
+echo "no picture" >"$work/broken/images/0003.jpg"
 code=0
 "$colmap" patch_match_stereo --workspace_path "$work/broken" "${options[@]}" >"$work/broken2.log" 2>&1 || code=$?
 ((code != 0)) || fail "exit code 0 of patch_match_stereo with a broken image"
-grep -q 0003.png "$work/broken2.log" || fail "the broken image is not named"
-[[ -f $work/broken/stereo/depth_maps/0005.png.geometric.bin ]] || fail "the other images were given up"
+grep -q 0003.jpg "$work/broken2.log" || fail "the broken image is not named"
+[[ -f $work/broken/stereo/depth_maps/0005.jpg.geometric.bin ]] || fail "the other images were given up"
 echo "ok: a broken image gives exit codes 4 and $code, the others are computed"
 
 echo "== automatic_reconstructor"
 rm -rf "$work/auto" && mkdir -p "$work/auto/sparse/0"
-cp data/room/sparse/* "$work/auto/sparse/0"
-"$colmap" automatic_reconstructor --workspace_path "$work/auto" --image_path data/room/images \
+cp data/workshop/sparse/* "$work/auto/sparse/0"
+"$colmap" automatic_reconstructor --workspace_path "$work/auto" --image_path data/workshop/images \
   --use_gpu 0 --quality low >"$work/auto.log" 2>&1 || fail "automatic_reconstructor, see $work/auto.log"
 rm -rf "$work/expected" && mkdir -p "$work/expected/stereo"
 cp -r "$work"/auto/dense/0/{images,sparse} "$work/expected"
