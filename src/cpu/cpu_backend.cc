@@ -34,7 +34,9 @@ class CpuBackend : public Backend {
 
   uint64_t MemoryNeeded(int width, int height, int num_srcs) const override {
     const uint64_t pixels = static_cast<uint64_t>(width) * height;
-    const uint64_t state = sizeof(Plane) * 2 + sizeof(float) + sizeof(uint32_t);
+    // Twice: the engine merges levels, and scores planes, with a second map.
+    const uint64_t state =
+        2 * (sizeof(Plane) + sizeof(float) + sizeof(uint32_t));
     return CpuViews::MemoryNeeded(width, height, num_srcs) + pixels * state;
   }
 
