@@ -28,7 +28,7 @@ struct MethodParams {
   float prior_angle = 0.0872665f;  // radians
   // Planes of regions without texture (src/prior/region_planes.h).
   float region_max_gradient = 1.4f;  // grey levels per pixel
-  float region_min_share = 0.0005f;   // of the image
+  float region_min_share = 0.0005f;  // of the image
   float region_max_error = 1;        // pixels; between views
   float region_max_residual = 0.5f;  // pixels; of a point to its plane
   int region_min_consistent = 3;     // views
