@@ -73,8 +73,8 @@ void RunStage(Backend* backend,
     backend->SetViews(views, params);
   }
   const auto score = [&](StartFrom start, HypothesisMap* scored) {
-    const Pass pass = {
-        PassKind::kBasic, start, 0, stage.passes.front().id, 0, false};
+    Pass pass = {PassKind::kBasic, start, 0, stage.passes.front().id, 0, false};
+    pass.ask_all_views = stage.passes.front().ask_all_views;
     backend->Run(pass, schedule.pattern, scored, {control.cancel, nullptr});
   };
   HypothesisMap carried;

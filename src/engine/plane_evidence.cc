@@ -9,10 +9,15 @@ namespace {
 
 constexpr float kShift = 2;  // pixels in the median view
 
-// Pixels per unit of -1/z; half the views have more.
+// Pixels per unit of -1/z; half the views that see depth at all have more. 0
+// if none does: all look from where the reference does.
 float MedianParallax(const ViewSet& views) {
   std::vector<float> all;
-  for (const View& src : views.srcs) all.push_back(Parallax(views.ref, src));
+  for (const View& src : views.srcs) {
+    const float parallax = Parallax(views.ref, src);
+    if (parallax > 0) all.push_back(parallax);
+  }
+  if (all.empty()) return 0;
   const auto middle = all.begin() + static_cast<ptrdiff_t>(all.size() / 2);
   std::nth_element(all.begin(), middle, all.end());
   return *middle;
@@ -56,7 +61,9 @@ std::vector<std::vector<PlaneEvidence>> FindEvidence(
     result[label].resize(of_region[label].size());
     most = std::max(most, of_region[label].size());
   }
-  const float shift = kShift / MedianParallax(views);
+  const float parallax = MedianParallax(views);
+  if (!(parallax > 0)) return result;
+  const float shift = kShift / parallax;
   HypothesisMap map(regions.width, regions.height);
   // The k-th candidates of all regions together.
   for (size_t k = 0; k < most; ++k) {

@@ -52,9 +52,10 @@ class MineRegionsTest : public testing::Test {
   float TrueDepth(size_t at) const { return rendered_[0].truth.depth[at]; }
   // As if the images matched `costs_` worse for each unit of 1/z beside the
   // depth that is `matching_scale_` times the true one.
-  void Score(HypothesisMap* map) const {
+  void Score(HypothesisMap* map) {
     for (size_t at = 0; at < map->planes.size(); ++at) {
-      if (!(map->planes[at].distance > 0)) continue;
+      if (map->planes[at].distance == 0) continue;
+      scored_.push_back(map->planes[at]);
       const float z = DepthAt(views_.ref.camera,
                               map->planes[at],
                               static_cast<float>(at % kWidth),
@@ -90,6 +91,7 @@ class MineRegionsTest : public testing::Test {
   ViewSet views_;
   HypothesisMap map_;
   MethodParams params_;
+  std::vector<Plane> scored_;
   float slope_ = 0;  // the images say nothing
   float matching_scale_ = 1;
 };
@@ -133,6 +135,24 @@ TEST_F(MineRegionsTest, APlaneThatTheImagesContradictIsNotBelieved) {
   slope_ = 10;
   EXPECT_GT(Mine()[0].distance, 0);
   matching_scale_ = 0.8f;
+  for (const Plane& prior : Mine()) EXPECT_EQ(prior.distance, 0);
+}
+
+// Crops of one photograph beside views from elsewhere: the former see no depth
+// and must not make the planes beside a candidate infinite.
+TEST_F(MineRegionsTest, ViewsFromTheReferencesOwnPlaceDoNoHarm) {
+  const View twin = {views_.ref.camera, views_.ref.image, nullptr};
+  views_.srcs.insert(views_.srcs.end(), 5, twin);
+  slope_ = 10;
+  const std::vector<Plane> priors = Mine();
+  EXPECT_GT(priors[0].distance, 0);
+  for (const Plane& plane : scored_) {
+    ASSERT_TRUE(std::isfinite(plane.distance + plane.normal.z));
+  }
+  views_.srcs.erase(views_.srcs.begin(), views_.srcs.end() - 5);
+  for (View& view : views_.srcs)
+    view.inverse_depth = std::make_shared<const InverseDepthMap>(
+        InverseDepthMap::Of(std::vector<float>(kWidth * kHeight, 0.2f)));
   for (const Plane& prior : Mine()) EXPECT_EQ(prior.distance, 0);
 }
 
