@@ -6,9 +6,9 @@ says who is better by more than noise.
         --seeds 3 --reference hpm --out bench/results/suite.json [-- --Hpm.quality low]
 
 The folder of --scenes holds dense workspaces with gt/depth_maps and, for F1,
-gt/points.ply, or with both in gt.tar.xz. A scene's suite.json may name its F1 thresholds (model units), the min_num_pixels of its
-fusion and which of its images take part; see SceneSettings. Everything after -- goes to
-hpm_mvs. Maps are written unfiltered, so that every pixel counts; COLMAP's fusion does its
+gt/points.ply, or with both in gt.tar.xz. A scene's suite.json may name its F1 thresholds
+(model units), the min_num_pixels of its fusion and which of its images take part; see
+SceneSettings. Everything after -- goes to hpm_mvs. Maps are written unfiltered, so that every pixel counts; COLMAP's fusion does its
 own checks. What --out holds already is not run again, so a second call adds to it.
 With --only_report nothing is run.
 """

@@ -11,6 +11,8 @@
 #include <Eigen/Dense>
 #include <Eigen/Eigenvalues>
 #include <opencv2/imgproc.hpp>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 
 namespace hpm {
 namespace {
@@ -216,7 +218,7 @@ RegionPlanes FindRegionPlanes(const WeakRegions& regions,
   }
   std::vector<std::vector<ReliablePoint>> rim_of = RimsOfRegions(regions, rim);
 
-  for (int label = 1; label <= regions.num_regions; ++label) {
+  const auto find_in = [&](int label) {
     Rng rng(random_key, label, 0);
     std::vector<ReliablePoint>& inside = inner_of[label];
     std::vector<ReliablePoint>& outside = rim_of[label];
@@ -254,7 +256,12 @@ RegionPlanes FindRegionPlanes(const WeakRegions& regions,
       add(found, false);
     for (const SupportedPlane& found : FindPlanes(outside, tolerance, &rng))
       add(found, true);
-  }
+  };
+  tbb::parallel_for(tbb::blocked_range<int>(1, regions.num_regions + 1, 1),
+                    [&](const auto& labels) {
+                      for (int l = labels.begin(); l < labels.end(); ++l)
+                        find_in(l);
+                    });
   return result;
 }
 
