@@ -65,6 +65,7 @@ void AddMethod(const MethodParams& params, Fingerprint* hash) {
                         params.depth_perturbation,
                         params.normal_perturbation,
                         params.same_plane_bound,
+                        params.worst_cost,
                         params.prior_gamma,
                         params.prior_beta,
                         params.prior_depth_share,

@@ -65,7 +65,8 @@ class MineRegionsTest : public testing::Test {
           slope_ * std::abs(1 / z - 1 / (matching_scale_ * TrueDepth(at)));
     }
   }
-  std::vector<Plane> Mine() {
+  std::vector<Plane> Mine() { return MineAll().priors; }
+  MinedRegions MineAll() {
     return MineRegions(
         views_, params_, map_, 7, [this](HypothesisMap* map) { Score(map); });
   }
