@@ -98,7 +98,8 @@ RunSummary PatchMatchController::Run() {
 
   log_(LogLevel::kInfo, "Reading workspace...");
   const Workspace workspace(options_.workspace, log_);
-  const RunLock lock(workspace.StatePath());
+  CancelToken stop(&cancel_);
+  const RunLock lock(workspace.StatePath(), log_, &stop);
   RemoveStaleTemporaries(workspace.StereoPath());
 
   log_(LogLevel::kInfo, "Reading configuration...");
@@ -164,6 +165,7 @@ RunSummary PatchMatchController::Run() {
                                              schedule,
                                              options_,
                                              plan,
+                                             lock,
                                              &inputs,
                                              backend,
                                              log_);
@@ -171,7 +173,13 @@ RunSummary PatchMatchController::Run() {
       options_.hpm.device != "cuda",
       log_);
   RunStatistics statistics;
-  RunStages(workspace, problems, plan, &inputs, &workers, &statistics);
+  try {
+    RunStages(workspace, problems, plan, &inputs, &workers, stop, &statistics);
+  } catch (const Error& error) {
+    if (error.code() == ErrorCode::kInterrupted) lock.ThrowIfLost();
+    throw;
+  }
+  lock.ThrowIfLost();
   if (!statistics.AnyFailed()) RemoveInnerMaps(workspace, plan);
 
   if (!options_.patch_match.allow_missing_files) {
@@ -199,6 +207,7 @@ void PatchMatchController::RunStages(const Workspace& workspace,
                                      const StagePlan& plan,
                                      InputCache* inputs,
                                      WorkerPool* workers,
+                                     const CancelToken& cancel,
                                      RunStatistics* statistics) {
   const int num_stages = static_cast<int>(plan.stages().size());
   const int num_problems = static_cast<int>(problems.size());
@@ -221,7 +230,7 @@ void PatchMatchController::RunStages(const Workspace& workspace,
     std::mutex mutex;
     int number = 0;
     workers->Run(needed, [&](StageRunner* runner, int p) {
-      cancel_.ThrowIfCancelled();
+      cancel.ThrowIfCancelled();
       const std::string& name = workspace.ImageName(problems[p].ref_image);
       const double work = WorkOf(plan, s, problems[p]);
       double counted = 0;  // of `work`, in done_work
@@ -245,7 +254,7 @@ void PatchMatchController::RunStages(const Workspace& workspace,
                        name,
                        stage.name));
       RunControl control;
-      control.cancel = &cancel_;
+      control.cancel = &cancel;
       control.progress = count;
       try {
         const StageResult result = runner->Run(s, p, control);

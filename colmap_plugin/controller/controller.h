@@ -54,8 +54,9 @@ class PatchMatchController {
                        ProgressSink progress,
                        const CancelToken& cancel);
 
-  // Throws Error(kBadInput, kLocked, kOutOfResources, kInterrupted ...). Images
-  // that fail one by one do not stop the others; they are listed in the
+  // Throws Error(kBadInput, kLocked, kOutOfResources, kInterrupted ...);
+  // kLocked also when another run has taken the workspace over meanwhile.
+  // Images that fail one by one do not stop the others; they are listed in the
   // summary.
   RunSummary Run();
 
@@ -65,6 +66,7 @@ class PatchMatchController {
                  const StagePlan& plan,
                  InputCache* inputs,
                  WorkerPool* workers,
+                 const CancelToken& cancel,
                  RunStatistics* statistics);
 
   ControllerOptions options_;

@@ -46,6 +46,7 @@ StageRunner::StageRunner(const Workspace& workspace,
                          const Schedule& schedule,
                          const ControllerOptions& options,
                          const StagePlan& plan,
+                         const RunLock& lock,
                          InputCache* inputs,
                          Backend* backend,
                          const LogSink& log)
@@ -54,6 +55,7 @@ StageRunner::StageRunner(const Workspace& workspace,
       schedule_(schedule),
       options_(options),
       plan_(plan),
+      lock_(lock),
       inputs_(inputs),
       backend_(backend),
       log_(log),
@@ -210,12 +212,14 @@ void StageRunner::Publish(int stage,
     log_(LogLevel::kInfo, "Writing " + info.name + " output for " + name);
   }
   const StageFiles files = plan_.Files(stage, image);
+  lock_.ThrowIfLost();
   RemoveStamp(workspace_.StatePath(), name, info.name);
   if (info.is_public) {
     std::error_code ignored;
     std::filesystem::remove(files.graph, ignored);
   }
   WriteMap(files.normal, maps.normal);
+  lock_.ThrowIfLost();
   WriteMap(files.depth, maps.depth);
   if (plan_.WritesGraph(stage)) {
     ConsistencyGraph graph = {map.width, map.height, {}};
@@ -233,6 +237,7 @@ void StageRunner::Publish(int stage,
   if (options_.hpm.previews && info.is_final) {
     WritePreviews(workspace_.StereoPath() / "previews", name, maps);
   }
+  lock_.ThrowIfLost();
   WriteStamp(workspace_.StatePath(),
              name,
              info.name,

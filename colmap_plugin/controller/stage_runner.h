@@ -4,6 +4,7 @@
 
 #include "colmap_plugin/controller/input_cache.h"
 #include "colmap_plugin/controller/stages.h"
+#include "colmap_plugin/workspace/run_lock.h"
 #include "src/engine/backend.h"
 #include "src/engine/estimator.h"
 
@@ -27,12 +28,13 @@ class StageRunner {
               const Schedule& schedule,
               const ControllerOptions& options,
               const StagePlan& plan,
+              const RunLock& lock,
               InputCache* inputs,
               Backend* backend,
               const LogSink& log);
 
   // Throws Error(kBadInput) if the reference or all of its sources cannot be
-  // read.
+  // read, Error(kLocked) instead of publishing when the lock is lost.
   StageResult Run(int stage, int problem, const RunControl& control);
 
  private:
@@ -52,6 +54,7 @@ class StageRunner {
   const Schedule& schedule_;
   const ControllerOptions& options_;
   const StagePlan& plan_;
+  const RunLock& lock_;
   InputCache* inputs_;
   Backend* backend_;
   const LogSink& log_;
