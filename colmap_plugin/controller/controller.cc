@@ -1,5 +1,6 @@
 #include "colmap_plugin/controller/controller.h"
 
+#include "colmap_plugin/controller/deep_images.h"
 #include "colmap_plugin/controller/devices.h"
 #include "colmap_plugin/controller/method_options.h"
 #include "colmap_plugin/controller/run_budget.h"
@@ -97,10 +98,11 @@ RunSummary PatchMatchController::Run() {
   cpus.push_back(MakeCpuBackend(target, num_threads));
 
   log_(LogLevel::kInfo, "Reading workspace...");
-  const Workspace workspace(options_.workspace, log_);
+  Workspace workspace(options_.workspace, log_);
   CancelToken stop(&cancel_);
   const RunLock lock(workspace.StatePath(), log_, &stop);
   RemoveStaleTemporaries(workspace.StereoPath());
+  workspace.StretchDeepImages(FindDeepRange(workspace, log_, stop));
 
   log_(LogLevel::kInfo, "Reading configuration...");
   const std::vector<StereoProblem> problems =

@@ -53,6 +53,14 @@ void AddImage(const Workspace& workspace, int image, Fingerprint* hash) {
     hash->AddDouble(v);
   for (const float v : camera.R.m) hash->AddDouble(v);
   for (const float v : {camera.t.x, camera.t.y, camera.t.z}) hash->AddDouble(v);
+  const ImageDecoding decoding = workspace.Decoding(image);
+  if (decoding.stretch) {
+    hash->AddString("stretched")
+        .AddDouble(decoding.stretch->low)
+        .AddDouble(decoding.stretch->high);
+  }
+  if (decoding.reduction > 1)
+    hash->AddString("decoded at").AddInt(decoding.reduction);
 }
 
 void AddMethod(const MethodParams& params, Fingerprint* hash) {

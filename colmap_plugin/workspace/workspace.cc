@@ -79,6 +79,21 @@ fs::path Workspace::ImagePath(int index) const {
   return options_.path / (is_pmvs_ ? "visualize" : "images") / ImageName(index);
 }
 
+ImageDecoding Workspace::Decoding(int index) const {
+  ImageDecoding decoding;
+  const std::optional<ImageSize>& file = file_size(index);
+  if (!file) return decoding;
+  if (file->depth != SampleDepth::k8) decoding.stretch = deep_range_;
+  if (file->is_jpeg) {
+    const Camera& camera = cameras_[index];
+    decoding.reduction =
+        ReductionFor(file->width, file->height, camera.width, camera.height);
+    decoding.file_width = file->width;
+    decoding.file_height = file->height;
+  }
+  return decoding;
+}
+
 fs::path Workspace::StereoPath() const {
   return options_.path /
          (is_pmvs_ ? "stereo-" + options_.pmvs_option_name : "stereo");
@@ -131,6 +146,7 @@ void Workspace::MakeCameras(const LogSink& log) {
         sparse_camera, image, size, options_.max_image_size, &why_not);
     cameras_.push_back(camera.value_or(Camera{}));
     usable_.push_back(camera.has_value());
+    file_sizes_.push_back(size);
     if (!camera) {
       if (log)
         log(LogLevel::kWarning,

@@ -3,10 +3,13 @@
 #pragma once
 
 #include "colmap_plugin/formats/sparse_model.h"
+#include "colmap_plugin/workspace/image_size.h"
 #include "src/base/log.h"
 #include "src/core/camera.h"
+#include "src/image/load_image.h"
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -48,6 +51,17 @@ class Workspace {
   // All zeros if the image is not usable.
   const Camera& camera(int index) const { return cameras_[index]; }
 
+  // Of the image file; nothing if it is missing or no image.
+  const std::optional<ImageSize>& file_size(int index) const {
+    return file_sizes_[index];
+  }
+  // How the image file becomes the grey image of the camera's size.
+  ImageDecoding Decoding(int index) const;
+  // For all images of more than 8 bits (see deep_images.h).
+  void StretchDeepImages(const std::optional<GreyRange>& range) {
+    deep_range_ = range;
+  }
+
   std::filesystem::path ImagePath(int index) const;
   std::filesystem::path StereoPath()
       const;  // WS/stereo or WS/stereo-<option name>
@@ -76,6 +90,8 @@ class Workspace {
   SparseModel model_;
   std::vector<Camera> cameras_;
   std::vector<bool> usable_;
+  std::vector<std::optional<ImageSize>> file_sizes_;
+  std::optional<GreyRange> deep_range_;
   std::unordered_map<std::string, int> index_of_name_;
 };
 
