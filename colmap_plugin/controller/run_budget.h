@@ -14,7 +14,7 @@ namespace hpm {
 struct MemoryNeeds {
   uint64_t working = 0;  // per image in flight: of the backend, the maps being
                          // written, and the decoder of one file
-  uint64_t inputs = 0;  // images and depth maps of one problem
+  uint64_t inputs = 0;   // images and depth maps of one problem
 };
 
 // While the image's file is decoded, at the scale it is decoded at.

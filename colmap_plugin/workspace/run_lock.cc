@@ -205,7 +205,8 @@ bool RunLock::TryCreate(LockOwner self) {
   if (n != static_cast<ssize_t>(contents_.size()))
     error = n < 0 ? errno : ENOSPC;
   // For other machines to see.
-  if (error == 0 && fsync(fd_) != 0 && errno != EINVAL && errno != ENOTSUP) error = errno;
+  if (error == 0 && fsync(fd_) != 0 && errno != EINVAL && errno != ENOTSUP)
+    error = errno;
   const bool is_named = IsSameFile(fd_, path_);
   if (error == 0 && is_named) return true;
   // Not named: a taker thought the empty file stale.

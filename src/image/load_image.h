@@ -27,8 +27,8 @@ struct ImageDecoding {
   int file_height = 0;
 };
 
-// The largest reduction that loses nothing of an image that is shrunk to width x
-// height anyway.
+// The largest reduction that loses nothing of an image that is shrunk to width
+// x height anyway.
 int ReductionFor(int file_width, int file_height, int width, int height);
 
 // Grey value = round(0.2126 R + 0.7152 G + 0.0722 B) as COLMAP; alpha dropped,
