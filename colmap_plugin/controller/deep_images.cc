@@ -81,9 +81,11 @@ bool Measure(const Workspace& workspace,
   std::vector<DeepImage*> unknown;
   uint64_t largest = 1;
   for (DeepImage& image : *images) {
-    if (image.range) continue;
+    const uint64_t bytes = DecodedBytes(workspace, image.index);
+    // A bomb is not even tried.
+    if (image.range || bytes > MemoryLimit()) continue;
     unknown.push_back(&image);
-    largest = std::max(largest, DecodedBytes(workspace, image.index));
+    largest = std::max(largest, bytes);
   }
   if (unknown.empty()) return false;
   const uint64_t most = MemoryLimit() / 4 / largest;
