@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include <opencv2/imgcodecs.hpp>
@@ -24,10 +25,14 @@ cv::Mat Decode(const std::filesystem::path& path, int flags) {
                     "); convert it to PNG or TIFF with 8 or 16 bits");
   }
   if (image.empty()) {
-    throw Error(
-        ErrorCode::kBadInput,
-        path.string() +
-            ": missing or not a readable image; undistort the images again");
+    std::error_code ignored;
+    throw Error(ErrorCode::kBadInput,
+                path.string() +
+                    (std::filesystem::exists(path, ignored)
+                         ? ": damaged or of a kind that cannot be decoded; "
+                           "undistort the images again or convert it to JPEG, "
+                           "PNG or TIFF"
+                         : ": missing; undistort the images again"));
   }
   return image;
 }

@@ -194,6 +194,16 @@ TEST_F(LoadImage, MissingFileIsBadInput) {
   ExpectBadInput(folder_ / "absent.png");
 }
 
+TEST_F(LoadImage, AKindThatCannotBeDecodedIsSaidToBeConverted) {
+  WriteFile(folder_ / "a.xyz", "GIF89z not of any kind");
+  try {
+    LoadGrayImage(folder_ / "a.xyz", 8, 8);
+    ADD_FAILURE() << "no error";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("convert"));
+  }
+}
+
 TEST_F(LoadImage, FolderIsBadInput) { ExpectBadInput(folder_.path()); }
 
 TEST_F(LoadImage, GarbageAndEmptyFilesAreBadInput) {
