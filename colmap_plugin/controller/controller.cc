@@ -7,6 +7,7 @@
 #include "colmap_plugin/controller/stage_runner.h"
 #include "colmap_plugin/controller/worker_pool.h"
 #include "colmap_plugin/formats/atomic_file.h"
+#include "colmap_plugin/workspace/far_origin.h"
 #include "colmap_plugin/workspace/output_check.h"
 #include "colmap_plugin/workspace/run_lock.h"
 #include "colmap_plugin/workspace/run_record.h"
@@ -106,6 +107,7 @@ RunSummary PatchMatchController::Run() {
       ReadProblems(workspace, MakeProblemOptions(options_), log_);
   log_(LogLevel::kInfo,
        fmt::format("Configuration has {} problems...", problems.size()));
+  WarnOfFarOrigin(workspace, problems, log_);
 
   if (options_.hpm.num_levels <= 0) {
     options_.hpm.num_levels =

@@ -106,7 +106,9 @@ ViewSet StageRunner::MakeViews(int stage, int problem) {
   misses_maps_ = stage > 0 && !plan_.HasCompleteMaps(stage - 1, p.ref_image);
   if (spec.passes.empty()) return views;  // nothing is matched
   for (const int src : p.src_images) {
-    View view = {plan_.CameraOf(stage, src), inputs_->Image(src), nullptr};
+    View view = {plan_.CameraAround(stage, src, p.ref_image),
+                 inputs_->Image(src),
+                 nullptr};
     if (view.image == nullptr) continue;
     if (spec.geometric) {
       if (plan_.HasCurrentMaps(stage - 1, src)) {

@@ -14,7 +14,7 @@ namespace hpm {
 namespace {
 
 // Raise when the same options give other maps.
-constexpr int kAlgorithmVersion = 6;
+constexpr int kAlgorithmVersion = 7;
 
 std::vector<Stage> MakeStages(const Schedule& schedule) {
   std::vector<Stage> stages;
@@ -41,8 +41,12 @@ std::vector<Stage> MakeStages(const Schedule& schedule) {
   return stages;
 }
 
-void AddImage(const Workspace& workspace, int image, Fingerprint* hash) {
-  const Camera& camera = workspace.camera(image);
+// The pose as the reference sees it.
+void AddImage(const Workspace& workspace,
+              int image,
+              int ref_image,
+              Fingerprint* hash) {
+  const Camera camera = workspace.CameraAround(image, ref_image);
   std::error_code error;
   const auto num_bytes =
       std::filesystem::file_size(workspace.ImagePath(image), error);
@@ -91,8 +95,9 @@ std::string OwnFingerprint(const Workspace& workspace,
   hash.AddInt(kAlgorithmVersion)
       .AddString(stage.name)
       .AddInt(options.random_seed);
-  AddImage(workspace, problem.ref_image, &hash);
-  for (const int src : problem.src_images) AddImage(workspace, src, &hash);
+  AddImage(workspace, problem.ref_image, problem.ref_image, &hash);
+  for (const int src : problem.src_images)
+    AddImage(workspace, src, problem.ref_image, &hash);
   hash.AddDouble(problem.depth_min).AddDouble(problem.depth_max);
   const MethodParams params = MakeMethodParams(options);
   AddMethod(params, &hash);

@@ -57,9 +57,14 @@ class StagePlan {
   // The same, or made without the maps of some source that failed.
   bool HasCurrentMaps(int s, int image) const;
   bool IsReference(int image) const { return problem_of_image_[image] >= 0; }
-  // The image's camera at the scale of the stage.
+  // The image's camera at the scale of the stage, its own centre the origin.
   Camera CameraOf(int s, int image) const {
     return LevelCamera(workspace_.camera(image), stages_[s].spec.level);
+  }
+  // The same around the centre of another one.
+  Camera CameraAround(int s, int image, int origin) const {
+    return LevelCamera(workspace_.CameraAround(image, origin),
+                       stages_[s].spec.level);
   }
   bool WritesGraph(int s) const;
 

@@ -39,11 +39,9 @@ std::vector<std::optional<DepthRange>> AutomaticRanges(
     const Workspace& workspace) {
   std::vector<std::vector<float>> depths(workspace.num_images());
   for (const SparsePoint& point : workspace.model().points) {
-    const Eigen::Vector3f xyz = point.xyz.cast<float>();
     for (const int image : point.track) {
       if (!workspace.usable(image)) continue;
-      const float z =
-          CamFromWorld(workspace.camera(image), {xyz.x(), xyz.y(), xyz.z()}).z;
+      const auto z = static_cast<float>(workspace.Depth(image, point.xyz));
       if (z > 0 && std::isfinite(z)) depths[image].push_back(z);
     }
   }
