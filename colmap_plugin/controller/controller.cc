@@ -69,6 +69,17 @@ void RemoveInnerMaps(const Workspace& workspace, const StagePlan& plan) {
   }
 }
 
+int CountFinalMaps(const Workspace& workspace, const StagePlan& plan) {
+  const std::string& stage = plan.stages().back().name;
+  int count = 0;
+  for (int image = 0; image < workspace.num_images(); ++image) {
+    std::error_code ignored;
+    count += std::filesystem::exists(
+        workspace.MapPath(image, MapKind::kDepth, stage), ignored);
+  }
+  return count;
+}
+
 }  // namespace
 
 PatchMatchController::PatchMatchController(const ControllerOptions& options,
@@ -185,11 +196,16 @@ RunSummary PatchMatchController::Run() {
   for (const StereoProblem& problem : problems) {
     names.push_back(workspace.ImageName(problem.ref_image));
   }
-  const RunSummary summary = statistics.Summarize(
+  for (const std::string& line :
+       FilterWarnings(statistics.losses(), options_.patch_match)) {
+    log_(LogLevel::kWarning, line);
+  }
+  RunSummary summary = statistics.Summarize(
       names,
       backend_name,
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start)
           .count());
+  summary.num_fusable = CountFinalMaps(workspace, plan);
   if (statistics.AnyComputed() || statistics.AnyFailed()) {
     WriteRunRecord(workspace.StatePath(), statistics.Record(options_, summary));
   }

@@ -29,6 +29,7 @@ void RunStatistics::Add(const std::string& image,
   if (stage.is_final) {
     valid_share_sum_ += result.valid_pixel_share;
     ++num_final_maps_;
+    losses_[image] = result.losses;
   }
   for (const auto& [phase, time] : result.seconds) seconds_[phase] += time;
   images_[image][stage.name] = ToJson(result);
@@ -48,6 +49,10 @@ RunSummary RunStatistics::Summarize(
   summary.seconds = seconds;
   if (num_final_maps_ > 0) {
     summary.valid_pixel_share = valid_share_sum_ / num_final_maps_;
+    for (const auto& [image, losses] : losses_) {
+      for (const auto& [criterion, share] : losses)
+        summary.filter_losses[criterion] += share / num_final_maps_;
+    }
   }
   if (pixels_ > 0) summary.ncc_evaluations_per_pixel = evaluations_ / pixels_;
   summary.peak_memory_bytes = PeakMemoryBytes();
@@ -78,6 +83,7 @@ nlohmann::json RunStatistics::Record(const ControllerOptions& options,
           {"seconds_per_phase", seconds_},
           {"ncc_evaluations_per_pixel", summary.ncc_evaluations_per_pixel},
           {"valid_pixel_share", summary.valid_pixel_share},
+          {"filter_losses", ToJson(summary.filter_losses)},
           {"peak_memory_bytes", summary.peak_memory_bytes},
           {"images_computed", summary.num_computed},
           {"images_kept", summary.num_kept},

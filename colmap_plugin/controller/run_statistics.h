@@ -4,6 +4,7 @@
 #include "colmap_plugin/controller/controller.h"
 #include "colmap_plugin/controller/stage_runner.h"
 
+#include <map>
 #include <set>
 #include <string>
 
@@ -30,6 +31,9 @@ class RunStatistics {
                        const std::string& backend,
                        double seconds) const;
 
+  // By image, of the final maps that were computed.
+  const std::map<std::string, FilterLosses>& losses() const { return losses_; }
+
   nlohmann::json Record(const ControllerOptions& options,
                         const RunSummary& summary) const;
 
@@ -42,6 +46,7 @@ class RunStatistics {
   double pixels_ = 0;           // of all images computed, at full resolution
   double valid_share_sum_ = 0;  // over final maps
   int num_final_maps_ = 0;
+  std::map<std::string, FilterLosses> losses_;
 };
 
 }  // namespace hpm

@@ -19,8 +19,8 @@
 namespace hpm {
 namespace {
 
-// Hypotheses may leave the range of the sparse points by this much
-// (specification 2.4).
+// Hypotheses may leave the range that is searched by this much (specification
+// 2.4).
 constexpr float kDepthMinSlack = 0.6f;
 constexpr float kDepthMaxSlack = 1.2f;
 
@@ -37,6 +37,7 @@ uint64_t RandomKey(int seed, const std::string& image_name) {
 
 nlohmann::json ToJson(const StageResult& result) {
   return {{"valid_pixel_share", result.valid_pixel_share},
+          {"filter_losses", ToJson(result.losses)},
           {"cost_evaluations_per_pixel", result.cost_evaluations_per_pixel},
           {"seconds", result.seconds}};
 }
@@ -190,6 +191,8 @@ void StageRunner::Publish(int stage,
     for (size_t i = 0; i < keep.size(); ++i) {
       keep[i] = __builtin_popcount(consistent[i]) >= params.min_num_consistent;
     }
+    result->losses =
+        CountFilterLosses(views, map, consistent, params, geometric);
     if (!plan_.WritesGraph(stage)) consistent = std::vector<uint32_t>();
   }
   if (!info.spec.passes.empty()) {
@@ -201,8 +204,16 @@ void StageRunner::Publish(int stage,
   backend_->ForgetViews();
 
   PhaseTimer timer(&result->seconds, "write");
-  const DepthAndNormal maps =
+  DepthAndNormal maps =
       ToColmapMaps(map, views.ref.camera, filter ? &keep : nullptr);
+  if (info.is_final) {
+    const size_t num_dropped = DropOutside(problems_[problem].published, &maps);
+    if (num_dropped > 0) {
+      result->losses[FilterCriterion::kRange] =
+          static_cast<double>(num_dropped) /
+          static_cast<double>(maps.depth.data.size());
+    }
+  }
   result->valid_pixel_share =
       1.0 - static_cast<double>(std::count(
                 maps.depth.data.begin(), maps.depth.data.end(), 0.0f)) /

@@ -2,6 +2,7 @@
 // publishes normal map, depth map, graph and stamp in this order.
 #pragma once
 
+#include "colmap_plugin/controller/filter_losses.h"
 #include "colmap_plugin/controller/input_cache.h"
 #include "colmap_plugin/controller/stages.h"
 #include "src/engine/backend.h"
@@ -14,7 +15,8 @@ namespace hpm {
 struct StageResult {
   double valid_pixel_share = 0;
   double cost_evaluations_per_pixel = 0;
-  PhaseTimes seconds;  // wall, per phase
+  FilterLosses losses;  // of a final stage
+  PhaseTimes seconds;   // wall, per phase
 };
 
 nlohmann::json ToJson(const StageResult& result);

@@ -117,7 +117,10 @@ std::string OwnFingerprint(const Workspace& workspace,
     hash.AddDouble(params.geom_weight).AddDouble(params.geom_max_error);
     hash.AddDouble(params.region_max_gradient);
   }
-  if (stage.is_final) AddFilter(options.patch_match, &hash);
+  if (stage.is_final) {
+    AddFilter(options.patch_match, &hash);
+    hash.AddDouble(problem.published.min).AddDouble(problem.published.max);
+  }
   return hash.Hex();
 }
 

@@ -58,7 +58,8 @@ class ProblemReader {
         ++num_cut_;
       }
       const DepthRange range = ranges.ForImage(ref);
-      problems.push_back({ref, std::move(sources), range.min, range.max});
+      problems.push_back(
+          {ref, std::move(sources), range.min, range.max, ranges.Published()});
     }
     if (num_cut_ > 0 && log_) {
       log_(LogLevel::kInfo,

@@ -7,6 +7,7 @@
 #include "src/engine/schedule.h"
 #include "tests/colmap_plugin/controller/scene_workspace.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -113,6 +114,35 @@ TEST_F(ControllerTest, ValidDepthsAreTrue) {
   }
   EXPECT_GT(num_valid, kWidth * kHeight / 2);
   EXPECT_GT(num_true, 0.9 * num_valid);
+}
+
+// The surface reaches out of the range: what lies outside is found, not
+// replaced by something false inside.
+TEST_F(ControllerTest, NothingOutsideAGivenRangeIsPublished) {
+  const TrueMaps truth =
+      RenderTrueMaps(MakeTiltedPlane(SmallScene(kNumImages, kWidth, kHeight)),
+                     scene_.views()[1].camera,
+                     -0.5);
+  std::vector<float> sorted = truth.depth;
+  std::sort(sorted.begin(), sorted.end());
+  const float nearest = sorted.front(), middle = sorted[sorted.size() / 2];
+  for (const auto& [min, max] :
+       {std::pair(nearest, middle), {0.7f * nearest, 0.85f * nearest}}) {
+    options_.patch_match.depth_min = min;
+    options_.patch_match.depth_max = max;
+    Run();
+    const std::vector<float> depth = Depth(1, "geometric");
+    int num_published = 0, num_false = 0;
+    for (size_t i = 0; i < depth.size(); ++i) {
+      if (depth[i] == 0) continue;
+      EXPECT_GE(depth[i], min);
+      EXPECT_LE(depth[i], max);
+      ++num_published;
+      num_false += std::abs(depth[i] / truth.depth[i] - 1) > 0.05;
+    }
+    EXPECT_LT(num_false, 0.01 * kWidth * kHeight);
+    if (max > nearest) EXPECT_GT(num_published, 0.3 * kWidth * kHeight);
+  }
 }
 
 TEST_F(ControllerTest, SecondRunKeepsEverything) {
