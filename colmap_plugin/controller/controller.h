@@ -3,7 +3,7 @@
 // publishes maps atomically, stops cleanly when cancelled.
 #pragma once
 
-#include "colmap_plugin/controller/filter_losses.h"
+#include "colmap_plugin/controller/filter_criterion.h"
 #include "colmap_plugin/controller/options.h"
 #include "src/base/cancel.h"
 #include "src/base/log.h"

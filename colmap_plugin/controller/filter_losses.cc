@@ -111,24 +111,6 @@ std::string Reason(FilterCriterion criterion,
 
 }  // namespace
 
-const char* NameOf(FilterCriterion criterion) {
-  switch (criterion) {
-    case FilterCriterion::kFacing:
-      return "facing";
-    case FilterCriterion::kAngle:
-      return "angle";
-    case FilterCriterion::kGeometry:
-      return "geometry";
-    case FilterCriterion::kCorrelation:
-      return "correlation";
-    case FilterCriterion::kNumConsistent:
-      return "consistent views";
-    case FilterCriterion::kRange:
-      break;
-  }
-  return "range";
-}
-
 nlohmann::json ToJson(const FilterLosses& losses) {
   nlohmann::json json = nlohmann::json::object();
   for (const auto& [criterion, share] : losses) json[NameOf(criterion)] = share;

@@ -2,6 +2,7 @@
 // told which option to turn.
 #pragma once
 
+#include "colmap_plugin/controller/filter_criterion.h"
 #include "colmap_plugin/controller/options.h"
 #include "src/core/consistency_filter.h"
 #include "src/engine/view.h"
@@ -15,22 +16,6 @@
 #include <nlohmann/json.hpp>
 
 namespace hpm {
-
-// In the order in which a source must pass them.
-enum class FilterCriterion {
-  kFacing,         // the source looks at the back of the surface
-  kAngle,          // the source sees it under too small an angle
-  kGeometry,       // the source found another depth, or none
-  kCorrelation,    // the images differ
-  kNumConsistent,  // some sources confirm the pixel, too few
-  kRange,          // confirmed, but outside the depth range given by hand
-};
-
-// Short names, for the run record and the summary.
-const char* NameOf(FilterCriterion criterion);
-
-// Share of an image's pixels, 0..1, per criterion that took any.
-using FilterLosses = std::map<FilterCriterion, double>;
 
 nlohmann::json ToJson(const FilterLosses& losses);
 

@@ -18,12 +18,15 @@ uint64_t PeakMemoryBytes() {
 }  // namespace
 
 void RunStatistics::Add(const std::string& image,
+                        bool is_reference,
                         const Stage& stage,
+                        const std::string& stage_name,
                         const Camera& camera,
                         const StageResult& result) {
   const double size = static_cast<double>(camera.width) * camera.height;
   evaluations_ += result.cost_evaluations_per_pixel * size;
-  if (computed_.insert(image).second) {
+  if (is_reference) computed_.insert(image);
+  if (worked_on_.insert(image).second) {
     pixels_ += size * static_cast<double>(1 << (2 * stage.spec.level));
   }
   if (stage.is_final) {
@@ -32,7 +35,7 @@ void RunStatistics::Add(const std::string& image,
     losses_[image] = result.losses;
   }
   for (const auto& [phase, time] : result.seconds) seconds_[phase] += time;
-  images_[image][stage.name] = ToJson(result);
+  images_[image][stage_name] = ToJson(result);
 }
 
 RunSummary RunStatistics::Summarize(
@@ -86,6 +89,7 @@ nlohmann::json RunStatistics::Record(const ControllerOptions& options,
           {"filter_losses", ToJson(summary.filter_losses)},
           {"peak_memory_bytes", summary.peak_memory_bytes},
           {"images_computed", summary.num_computed},
+          {"sources_computed", worked_on_.size() - computed_.size()},
           {"images_kept", summary.num_kept},
           {"images_failed", summary.failed},
           {"images", images_}};

@@ -14,8 +14,12 @@ namespace hpm {
 
 class RunStatistics {
  public:
+  // stage_name: as in StagePlan::NameOf(). Images that are only sources count
+  // for the work, not for the images.
   void Add(const std::string& image,
+           bool is_reference,
            const Stage& stage,
+           const std::string& stage_name,
            const Camera& camera,
            const StageResult& result);
   void AddFailure(const std::string& image) { failed_.insert(image); }
@@ -40,6 +44,7 @@ class RunStatistics {
  private:
   nlohmann::json images_;
   std::set<std::string> computed_;
+  std::set<std::string> worked_on_;  // these and sources
   std::set<std::string> failed_;
   PhaseTimes seconds_;
   double evaluations_ = 0;      // matching costs, all images and stages

@@ -117,23 +117,13 @@ ViewSet StageRunner::MakeViews(int stage, int problem) {
             src, view.camera, plan_.Files(stage - 1, src));
       }
       if (view.inverse_depth == nullptr) ++num_without_maps_;
-      if (plan_.IsReference(src) && (view.inverse_depth == nullptr ||
-                                     !plan_.HasCompleteMaps(stage - 1, src))) {
+      if (plan_.HasProblem(src) && (view.inverse_depth == nullptr ||
+                                    !plan_.HasCompleteMaps(stage - 1, src))) {
         misses_maps_ = true;
       }
     }
     views.srcs.push_back(std::move(view));
     src_images_.push_back(src);
-  }
-  if (num_without_maps_ > 0) {
-    log_(LogLevel::kWarning,
-         fmt::format("{}: {} of {} sources have no {} maps (no entry of their "
-                     "own in patch-match.cfg?) and take part without geometric "
-                     "consistency",
-                     name,
-                     num_without_maps_,
-                     views.srcs.size(),
-                     plan_.stages()[stage - 1].name));
   }
   if (views.srcs.empty()) {
     throw Error(ErrorCode::kBadInput,
@@ -182,7 +172,7 @@ void StageRunner::Publish(int stage,
     const FilterParams params = MakeFilterParams(
         options_.patch_match,
         static_cast<int>(problems_[problem].src_images.size()));
-    // A subset of images may have no maps of its sources at all.
+    // Maps of all sources may have failed.
     const bool geometric =
         info.spec.geometric &&
         num_without_maps_ < static_cast<int>(views.srcs.size());
@@ -193,7 +183,7 @@ void StageRunner::Publish(int stage,
     }
     result->losses =
         CountFilterLosses(views, map, consistent, params, geometric);
-    if (!plan_.WritesGraph(stage)) consistent = std::vector<uint32_t>();
+    if (!plan_.WritesGraph(stage, image)) consistent = std::vector<uint32_t>();
   }
   if (!info.spec.passes.empty()) {
     result->cost_evaluations_per_pixel =
@@ -219,18 +209,20 @@ void StageRunner::Publish(int stage,
                 maps.depth.data.begin(), maps.depth.data.end(), 0.0f)) /
                 static_cast<double>(maps.depth.data.size());
   const std::string& name = workspace_.ImageName(image);
-  if (info.is_public) {
+  const bool is_public = plan_.IsPublic(stage, image);
+  const std::string stage_name = plan_.NameOf(stage, image);
+  if (is_public) {
     log_(LogLevel::kInfo, "Writing " + info.name + " output for " + name);
   }
   const StageFiles files = plan_.Files(stage, image);
-  RemoveStamp(workspace_.StatePath(), name, info.name);
-  if (info.is_public) {
+  RemoveStamp(workspace_.StatePath(), name, stage_name);
+  if (is_public) {
     std::error_code ignored;
     std::filesystem::remove(files.graph, ignored);
   }
   WriteMap(files.normal, maps.normal);
   WriteMap(files.depth, maps.depth);
-  if (plan_.WritesGraph(stage)) {
+  if (plan_.WritesGraph(stage, image)) {
     ConsistencyGraph graph = {map.width, map.height, {}};
     for (size_t i = 0; i < consistent.size(); ++i) {
       if (consistent[i] == 0 || maps.depth.data[i] == 0) continue;
@@ -248,7 +240,7 @@ void StageRunner::Publish(int stage,
   }
   WriteStamp(workspace_.StatePath(),
              name,
-             info.name,
+             stage_name,
              misses_maps_ ? plan_.IncompleteFingerprintOf(stage, problem)
                           : plan_.FingerprintOf(stage, problem),
              ToJson(*result));

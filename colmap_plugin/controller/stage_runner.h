@@ -58,8 +58,8 @@ class StageRunner {
   Backend* backend_;
   const LogSink& log_;
   const MethodParams params_;
-  // Of the current problem: sources without depth maps, and whether one that is
-  // a reference itself lacks them, or has them from incomplete inputs.
+  // Of the current problem: sources without depth maps, and whether one that
+  // should have them lacks them, or has them from incomplete inputs.
   int num_without_maps_ = 0;
   bool misses_maps_ = false;
   // Image index of each source view of the current problem.

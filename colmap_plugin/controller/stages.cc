@@ -126,6 +126,10 @@ std::string OwnFingerprint(const Workspace& workspace,
 
 }  // namespace
 
+std::string NameForSources(const Stage& stage) {
+  return "source_" + stage.name;
+}
+
 StagePlan::StagePlan(const Workspace& workspace,
                      const std::vector<StereoProblem>& problems,
                      const Schedule& schedule,
@@ -151,8 +155,7 @@ StagePlan::StagePlan(const Workspace& workspace,
         for (const int src : problems[p].src_images) {
           if (!stages_[s].spec.geometric) break;
           const int q = problem_of_image_[src];
-          hash.AddString(q < 0 ? StampOf(s - 1, src).value_or("")
-                               : fingerprints_[s - 1][q]);
+          hash.AddString(q < 0 ? "" : fingerprints_[s - 1][q]);
         }
       }
       fingerprints_[s].push_back(hash.Hex());
@@ -163,10 +166,10 @@ StagePlan::StagePlan(const Workspace& workspace,
   // passes only if the pass after them still has to read them.
   needed_.assign(num_stages, std::vector<bool>(num_problems, false));
   for (int s = num_stages - 1; s >= 0; --s) {
-    const bool visible = stages_[s].is_public;
-    std::vector<bool> wanted(num_problems, visible);
-    for (int q = 0; q < num_problems && !visible; ++q) {
-      if (!needed_[s + 1][q]) continue;
+    std::vector<bool> wanted(num_problems);
+    for (int q = 0; q < num_problems; ++q) {
+      if (IsPublic(s, problems[q].ref_image)) wanted[q] = true;
+      if (s + 1 == num_stages || !needed_[s + 1][q]) continue;
       wanted[q] = true;
       if (!stages_[s + 1].spec.geometric) continue;
       for (const int src : problems[q].src_images) {
@@ -185,26 +188,36 @@ int StagePlan::CountNeeded(int s) const {
 }
 
 StageFiles StagePlan::Files(int s, int image) const {
-  const Stage& stage = stages_[s];
-  if (stage.is_public) {
-    return {workspace_.MapPath(image, MapKind::kDepth, stage.name),
-            workspace_.MapPath(image, MapKind::kNormal, stage.name),
-            workspace_.MapPath(image, MapKind::kConsistencyGraph, stage.name)};
+  const std::string stage = NameOf(s, image);
+  if (IsPublic(s, image)) {
+    return {workspace_.MapPath(image, MapKind::kDepth, stage),
+            workspace_.MapPath(image, MapKind::kNormal, stage),
+            workspace_.MapPath(image, MapKind::kConsistencyGraph, stage)};
   }
-  const std::filesystem::path folder = workspace_.StatePath() / stage.name;
+  const std::filesystem::path folder = workspace_.StatePath() / stage;
   const std::string& name = workspace_.ImageName(image);
   return {folder / (name + ".depth.bin"), folder / (name + ".normal.bin"), {}};
 }
 
 std::optional<std::string> StagePlan::StampOf(int s, int image) const {
   return ReadStampFingerprint(
-      workspace_.StatePath(), workspace_.ImageName(image), stages_[s].name);
+      workspace_.StatePath(), workspace_.ImageName(image), NameOf(s, image));
+}
+
+std::string StagePlan::NameOf(int s, int image) const {
+  const int p = problem_of_image_[image];
+  return p >= 0 && !problems_[p].is_reference ? NameForSources(stages_[s])
+                                              : stages_[s].name;
+}
+
+bool StagePlan::IsPublic(int s, int image) const {
+  const int p = problem_of_image_[image];
+  return stages_[s].is_public && (p < 0 || problems_[p].is_reference);
 }
 
 bool StagePlan::HasCompleteMaps(int s, int image) const {
-  const std::optional<std::string> stamp = StampOf(s, image);
   const int p = problem_of_image_[image];
-  return stamp && (p < 0 || *stamp == fingerprints_[s][p]);
+  return p >= 0 && StampOf(s, image) == fingerprints_[s][p];
 }
 
 bool StagePlan::HasCurrentMaps(int s, int image) const {
@@ -213,8 +226,8 @@ bool StagePlan::HasCurrentMaps(int s, int image) const {
          (p >= 0 && StampOf(s, image) == IncompleteFingerprintOf(s, p));
 }
 
-bool StagePlan::WritesGraph(int s) const {
-  return options_.patch_match.write_consistency_graph && stages_[s].is_public;
+bool StagePlan::WritesGraph(int s, int image) const {
+  return options_.patch_match.write_consistency_graph && IsPublic(s, image);
 }
 
 bool StagePlan::IsFinished(int s, int p) {
@@ -235,7 +248,7 @@ bool StagePlan::IsFinished(int s, int p) {
            header.channels == channels;
   };
   try {
-    if (WritesGraph(s)) {
+    if (WritesGraph(s, image)) {
       const ConsistencyGraph graph = ReadConsistencyGraph(files.graph);
       if (graph.width != camera.width || graph.height != camera.height) {
         return false;

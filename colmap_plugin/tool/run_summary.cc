@@ -38,10 +38,15 @@ std::string FusionCommand(const ControllerOptions& options,
   return command;
 }
 
+// Empty if nothing worth a line was lost.
 std::string LossesLine(const FilterLosses& losses) {
+  constexpr double kTooLittle = 0.0005;
   std::vector<std::string> parts;
-  for (const auto& [criterion, share] : losses)
+  for (const auto& [criterion, share] : losses) {
+    if (share < kTooLittle) continue;
     parts.push_back(fmt::format("{} {:.1f} %", NameOf(criterion), 100 * share));
+  }
+  if (parts.empty()) return "";
   return fmt::format("Pixels dropped by: {}", fmt::join(parts, ", "));
 }
 
@@ -59,8 +64,8 @@ std::vector<std::string> SummaryLines(const ControllerOptions& options,
   if (summary.num_computed > 0) {
     lines.push_back(fmt::format("Pixels with a depth: {:.1f} %",
                                 100 * summary.valid_pixel_share));
-    if (!summary.filter_losses.empty())
-      lines.push_back(LossesLine(summary.filter_losses));
+    const std::string losses = LossesLine(summary.filter_losses);
+    if (!losses.empty()) lines.push_back(losses);
   }
   lines.push_back(
       fmt::format("Time {}, peak memory {:.2f} GiB{}",

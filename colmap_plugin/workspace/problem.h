@@ -18,6 +18,9 @@ struct StereoProblem {
   float depth_max = 0;
   // Depths outside are not published.
   DepthRange published = {0, std::numeric_limits<float>::infinity()};
+  // False: only a source of references, see SourceProblems(). Its maps are for
+  // other problems and not published.
+  bool is_reference = true;
 };
 
 struct ProblemOptions {

@@ -145,6 +145,44 @@ TEST_F(ControllerTest, NothingOutsideAGivenRangeIsPublished) {
   }
 }
 
+// The maps of a few references are those of a run over all images, byte for
+// byte, and nothing of the others is published or left behind.
+TEST_F(ControllerTest, AFewReferencesGetTheMapsOfTheFullRun) {
+  for (const char* method : {"nesp", "hpm_plus"}) {
+    options_.hpm.method = method;
+    options_.hpm.num_levels = 2;
+    Run();
+    const std::vector<float> expected = Depth(1, "geometric");
+    for (const char* folder : {"depth_maps", "normal_maps", "hpm_mvs"})
+      std::filesystem::remove_all(scene_.path() / "stereo" / folder);
+    const std::filesystem::path cfg = scene_.path() / "stereo/patch-match.cfg";
+    const std::string all = ReadFile(cfg);
+    WriteFile(cfg, ViewName(1) + "\n__auto__, 20\n");
+    const RunSummary summary = Run();
+    EXPECT_EQ(summary.num_problems, 1);
+    EXPECT_EQ(summary.num_computed, 1);
+    EXPECT_EQ(summary.num_fusable, 1);
+    EXPECT_EQ(Depth(1, "geometric"), expected) << method;
+    EXPECT_THAT(FilesNamedLike(ViewName(0) + ".photometric.bin"),
+                testing::IsEmpty());
+    EXPECT_THAT(FilesNamedLike(".depth.bin"), testing::IsEmpty());
+    EXPECT_EQ(Run().num_kept, 1);
+    WriteFile(cfg, all);
+    EXPECT_EQ(Run().num_computed, kNumImages - 1);
+    EXPECT_EQ(Depth(1, "geometric"), expected) << method;
+  }
+}
+
+TEST_F(ControllerTest, ASourceThatCannotBeReadFailsNobodyElse) {
+  WriteFile(scene_.path() / "stereo/patch-match.cfg",
+            ViewName(1) + "\n__auto__, 20\n");
+  std::filesystem::remove(scene_.path() / "images" / ViewName(3));
+  options_.patch_match.allow_missing_files = true;
+  const RunSummary summary = Run();
+  EXPECT_THAT(summary.failed, testing::IsEmpty());
+  EXPECT_GT(summary.valid_pixel_share, 0.5);
+}
+
 TEST_F(ControllerTest, SecondRunKeepsEverything) {
   Run();
   const std::vector<float> before = Depth(0, "geometric");

@@ -30,7 +30,13 @@ void Write(const Eigen::Vector3d& at, TestWorkspace* files) {
   }
 }
 
-StereoProblem ProblemOf(int ref) { return {ref, {1}, 2, 4}; }
+StereoProblem ProblemOf(int ref) {
+  StereoProblem problem;
+  problem.ref_image = ref;
+  problem.depth_min = 2;
+  problem.depth_max = 4;
+  return problem;
+}
 
 TEST(FarOrigin, RelativePosesDepthsAndAnglesAreThoseOfTheModelNearIt) {
   TestWorkspace near_files;
