@@ -1,5 +1,6 @@
 #include "colmap_plugin/controller/controller.h"
 
+#include "colmap_plugin/controller/cut_maps.h"
 #include "colmap_plugin/controller/devices.h"
 #include "colmap_plugin/controller/method_options.h"
 #include "colmap_plugin/controller/run_budget.h"
@@ -233,7 +234,10 @@ RunSummary PatchMatchController::Run() {
       log_);
   RunStatistics statistics;
   RunStages(workspace, problems, plan, &inputs, &workers, &statistics);
-  if (!statistics.AnyFailed()) RemoveInnerMaps(workspace, plan);
+  if (!statistics.AnyFailed()) {
+    RemoveInnerMaps(workspace, plan);
+    CutInputMaps(workspace, problems, plan);
+  }
 
   if (!options_.patch_match.allow_missing_files) {
     for (const std::string& name : inputs.UnreadableImages()) {

@@ -166,9 +166,8 @@ StagePlan::StagePlan(const Workspace& workspace,
   // passes only if the pass after them still has to read them.
   needed_.assign(num_stages, std::vector<bool>(num_problems, false));
   for (int s = num_stages - 1; s >= 0; --s) {
-    std::vector<bool> wanted(num_problems);
+    std::vector<bool> wanted(num_problems);  // by the stage after
     for (int q = 0; q < num_problems; ++q) {
-      if (IsPublic(s, problems[q].ref_image)) wanted[q] = true;
       if (s + 1 == num_stages || !needed_[s + 1][q]) continue;
       wanted[q] = true;
       if (!stages_[s + 1].spec.geometric) continue;
@@ -177,7 +176,8 @@ StagePlan::StagePlan(const Workspace& workspace,
       }
     }
     for (int p = 0; p < num_problems; ++p) {
-      needed_[s][p] = wanted[p] && (options.hpm.overwrite || !IsFinished(s, p));
+      if (!wanted[p] && !IsPublic(s, problems[p].ref_image)) continue;
+      needed_[s][p] = options.hpm.overwrite || !IsFinished(s, p, !wanted[p]);
     }
   }
 }
@@ -185,6 +185,14 @@ StagePlan::StagePlan(const Workspace& workspace,
 int StagePlan::CountNeeded(int s) const {
   return static_cast<int>(
       std::count(needed_[s].begin(), needed_[s].end(), true));
+}
+
+std::string StagePlan::CutFingerprintOf(int s, int p) const {
+  Fingerprint hash;
+  hash.AddString(fingerprints_[s][p])
+      .AddDouble(problems_[p].published.min)
+      .AddDouble(problems_[p].published.max);
+  return hash.Hex() + "-cut";
 }
 
 StageFiles StagePlan::Files(int s, int image) const {
@@ -230,7 +238,7 @@ bool StagePlan::WritesGraph(int s, int image) const {
   return options_.patch_match.write_consistency_graph && IsPublic(s, image);
 }
 
-bool StagePlan::IsFinished(int s, int p) {
+bool StagePlan::IsFinished(int s, int p, bool may_be_cut) {
   const int image = problems_[p].ref_image;
   const StageFiles files = Files(s, image);
   std::error_code error;
@@ -239,8 +247,9 @@ bool StagePlan::IsFinished(int s, int p) {
     return false;
   }
   if (!HasCompleteMaps(s, image)) {
-    replaces_foreign_maps_ = true;
-    return false;
+    const bool is_cut = StampOf(s, image) == CutFingerprintOf(s, p);
+    if (!is_cut) replaces_foreign_maps_ = true;
+    if (!is_cut || !may_be_cut) return false;
   }
   const Camera camera = CameraOf(s, image);
   const auto fits = [&](const MapHeader& header, int channels) {

@@ -55,6 +55,10 @@ class StagePlan {
   std::string IncompleteFingerprintOf(int s, int p) const {
     return fingerprints_[s][p] + "-incomplete";
   }
+  // What the stamp of a public stage before the last holds once its maps were
+  // cut to a depth range given by hand (cut_maps.h): finished for users, of no
+  // use to the stage after.
+  std::string CutFingerprintOf(int s, int p) const;
   StageFiles Files(int s, int image) const;
   // The stage's name, in files and stamps, for this image.
   std::string NameOf(int s, int image) const;
@@ -78,7 +82,7 @@ class StagePlan {
   bool WritesGraph(int s, int image) const;
 
  private:
-  bool IsFinished(int s, int p);
+  bool IsFinished(int s, int p, bool may_be_cut);
   std::optional<std::string> StampOf(int s, int image) const;
 
   const Workspace& workspace_;

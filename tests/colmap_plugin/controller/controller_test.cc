@@ -145,6 +145,30 @@ TEST_F(ControllerTest, NothingOutsideAGivenRangeIsPublished) {
   }
 }
 
+// The photometric maps are cut, too, once nobody reads them, and made whole
+// again for whoever does.
+TEST_F(ControllerTest, InputMapsAreCutWhenTheRunIsComplete) {
+  options_.patch_match.depth_min = 4.5;
+  options_.patch_match.depth_max = 5;
+  Run();
+  const auto num_outside = [&](int image) {
+    const std::vector<float> depth = Depth(image, "photometric");
+    return std::count_if(depth.begin(), depth.end(), [](float z) {
+      return z != 0 && (z < 4.5f || z > 5);
+    });
+  };
+  for (int i = 0; i < kNumImages; ++i) EXPECT_EQ(num_outside(i), 0);
+  const std::vector<float> expected = Depth(1, "geometric");
+  EXPECT_EQ(Run().num_kept, kNumImages);
+  std::filesystem::remove(MapPath("depth_maps", 1, "geometric"));
+  Run();
+  EXPECT_EQ(Depth(1, "geometric"), expected);
+  for (int i = 0; i < kNumImages; ++i) EXPECT_EQ(num_outside(i), 0);
+  // Another range, of the same search.
+  options_.patch_match.depth_max = 5.2;
+  EXPECT_EQ(Run().num_computed, kNumImages);
+}
+
 // The maps of a few references are those of a run over all images, byte for
 // byte, and nothing of the others is published or left behind.
 TEST_F(ControllerTest, AFewReferencesGetTheMapsOfTheFullRun) {
