@@ -2,6 +2,7 @@
 // publishes normal map, depth map, graph and stamp in this order.
 #pragma once
 
+#include "colmap_plugin/controller/filter_losses.h"
 #include "colmap_plugin/controller/input_cache.h"
 #include "colmap_plugin/controller/stages.h"
 #include "colmap_plugin/workspace/run_lock.h"
@@ -15,7 +16,8 @@ namespace hpm {
 struct StageResult {
   double valid_pixel_share = 0;
   double cost_evaluations_per_pixel = 0;
-  PhaseTimes seconds;  // wall, per phase
+  FilterLosses losses;  // of a final stage
+  PhaseTimes seconds;   // wall, per phase
 };
 
 nlohmann::json ToJson(const StageResult& result);
@@ -59,8 +61,8 @@ class StageRunner {
   Backend* backend_;
   const LogSink& log_;
   const MethodParams params_;
-  // Of the current problem: sources without depth maps, and whether one that is
-  // a reference itself lacks them, or has them from incomplete inputs.
+  // Of the current problem: sources without depth maps, and whether one that
+  // should have them lacks them, or has them from incomplete inputs.
   int num_without_maps_ = 0;
   bool misses_maps_ = false;
   // Image index of each source view of the current problem.
