@@ -1,5 +1,7 @@
 #include "colmap_plugin/controller/controller.h"
 
+#include "colmap_plugin/controller/cut_maps.h"
+#include "colmap_plugin/controller/deep_images.h"
 #include "colmap_plugin/controller/devices.h"
 #include "colmap_plugin/controller/method_options.h"
 #include "colmap_plugin/controller/run_budget.h"
@@ -7,9 +9,11 @@
 #include "colmap_plugin/controller/stage_runner.h"
 #include "colmap_plugin/controller/worker_pool.h"
 #include "colmap_plugin/formats/atomic_file.h"
+#include "colmap_plugin/workspace/far_origin.h"
 #include "colmap_plugin/workspace/output_check.h"
 #include "colmap_plugin/workspace/run_lock.h"
 #include "colmap_plugin/workspace/run_record.h"
+#include "colmap_plugin/workspace/source_problems.h"
 #include "src/base/error.h"
 #include "src/cpu/cpu_backend.h"
 #include "src/engine/memory_plan.h"
@@ -19,6 +23,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -49,6 +54,31 @@ int LevelsOf(const Method& method, const Workspace& workspace) {
   return AutomaticLevels(method, side);
 }
 
+// Problems of images that are only sources and have something to do.
+int CountNeededSources(const std::vector<StereoProblem>& problems,
+                       const StagePlan& plan) {
+  int count = 0;
+  for (int p = 0; p < static_cast<int>(problems.size()); ++p) {
+    if (problems[p].is_reference) continue;
+    bool needed = false;
+    for (int s = 0; s < static_cast<int>(plan.stages().size()); ++s)
+      needed |= plan.IsNeeded(s, p);
+    count += needed;
+  }
+  return count;
+}
+
+// Users choose it for speed, and wonder about the result.
+std::string WithoutGeometryNote(const Method& method) {
+  return fmt::format(
+      "--PatchMatchStereo.geom_consistency 0: depths are not made to agree "
+      "between images{}; expect a less dense result with many more gross "
+      "errors",
+      method.priors == Priors::kRegions
+          ? ", and surfaces with little texture get no priors"
+          : "");
+}
+
 // Work of a stage of an image: iterations times pixels.
 double WorkOf(const StagePlan& plan, int stage, const StereoProblem& problem) {
   const Camera camera = plan.CameraOf(stage, problem.ref_image);
@@ -62,10 +92,23 @@ double WorkOf(const StagePlan& plan, int stage, const StereoProblem& problem) {
 // Maps between stages are of no use once the result is complete.
 void RemoveInnerMaps(const Workspace& workspace, const StagePlan& plan) {
   for (const Stage& stage : plan.stages()) {
-    if (stage.is_public) continue;
     std::error_code ignored;
+    std::filesystem::remove_all(workspace.StatePath() / NameForSources(stage),
+                                ignored);
+    if (stage.is_public) continue;
     std::filesystem::remove_all(workspace.StatePath() / stage.name, ignored);
   }
+}
+
+int CountFinalMaps(const Workspace& workspace, const StagePlan& plan) {
+  const std::string& stage = plan.stages().back().name;
+  int count = 0;
+  for (int image = 0; image < workspace.num_images(); ++image) {
+    std::error_code ignored;
+    count += std::filesystem::exists(
+        workspace.MapPath(image, MapKind::kDepth, stage), ignored);
+  }
+  return count;
 }
 
 }  // namespace
@@ -97,16 +140,27 @@ RunSummary PatchMatchController::Run() {
   cpus.push_back(MakeCpuBackend(target, num_threads));
 
   log_(LogLevel::kInfo, "Reading workspace...");
-  const Workspace workspace(options_.workspace, log_);
-  const RunLock lock(workspace.StatePath());
+  Workspace workspace(options_.workspace, log_);
+  CancelToken stop(&cancel_);
+  const RunLock lock(workspace.StatePath(), log_, &stop);
   RemoveStaleTemporaries(workspace.StereoPath());
+  workspace.StretchDeepImages(FindDeepRange(workspace, log_, stop));
 
   log_(LogLevel::kInfo, "Reading configuration...");
-  const std::vector<StereoProblem> problems =
-      ReadProblems(workspace, MakeProblemOptions(options_), log_);
+  const ProblemOptions problem_options = MakeProblemOptions(options_);
+  std::vector<StereoProblem> problems =
+      ReadProblems(workspace, problem_options, log_);
+  const size_t num_references = problems.size();
   log_(LogLevel::kInfo,
-       fmt::format("Configuration has {} problems...", problems.size()));
+       fmt::format("Configuration has {} problems...", num_references));
+  WarnOfFarOrigin(workspace, problems, log_);
 
+  const bool geometric = options_.patch_match.geom_consistency;
+  if (geometric) {
+    for (StereoProblem& problem :
+         SourceProblems(workspace, problems, problem_options))
+      problems.push_back(std::move(problem));
+  }
   if (options_.hpm.num_levels <= 0) {
     options_.hpm.num_levels =
         LevelsOf(FindMethod(options_.hpm.method), workspace);
@@ -114,13 +168,24 @@ RunSummary PatchMatchController::Run() {
   const Schedule schedule = MakeSchedule(MakeScheduleOptions(options_));
   const StagePlan plan(workspace, problems, schedule, options_);
   PrepareOutputs(workspace, problems, BytesToWrite(problems, plan));
+  const int num_sources = CountNeededSources(problems, plan);
+  if (num_sources > 0) {
+    log_(
+        LogLevel::kInfo,
+        fmt::format("{} further images are estimated, because they are sources "
+                    "of these; their maps are not published",
+                    num_sources));
+  }
   if (plan.ReplacesForeignMaps()) {
     log_(LogLevel::kWarning,
          "maps made with other options or by another program are computed "
          "anew");
   }
 
-  const bool geometric = options_.patch_match.geom_consistency;
+  if (!geometric) {
+    log_(LogLevel::kWarning,
+         WithoutGeometryNote(FindMethod(options_.hpm.method)));
+  }
   std::vector<std::unique_ptr<Backend>> gpus =
       OpenGpus(options_,
                LargestProblem(workspace, problems, geometric),
@@ -164,6 +229,7 @@ RunSummary PatchMatchController::Run() {
                                              schedule,
                                              options_,
                                              plan,
+                                             lock,
                                              &inputs,
                                              backend,
                                              log_);
@@ -171,8 +237,17 @@ RunSummary PatchMatchController::Run() {
       options_.hpm.device != "cuda",
       log_);
   RunStatistics statistics;
-  RunStages(workspace, problems, plan, &inputs, &workers, &statistics);
-  if (!statistics.AnyFailed()) RemoveInnerMaps(workspace, plan);
+  try {
+    RunStages(workspace, problems, plan, &inputs, &workers, stop, &statistics);
+  } catch (const Error& error) {
+    if (error.code() == ErrorCode::kInterrupted) lock.ThrowIfLost();
+    throw;
+  }
+  lock.ThrowIfLost();
+  if (!statistics.AnyFailed()) {
+    RemoveInnerMaps(workspace, plan);
+    CutInputMaps(workspace, problems, plan);
+  }
 
   if (!options_.patch_match.allow_missing_files) {
     for (const std::string& name : inputs.UnreadableImages()) {
@@ -180,14 +255,18 @@ RunSummary PatchMatchController::Run() {
     }
   }
   std::vector<std::string> names;
-  for (const StereoProblem& problem : problems) {
-    names.push_back(workspace.ImageName(problem.ref_image));
+  for (size_t p = 0; p < num_references; ++p)
+    names.push_back(workspace.ImageName(problems[p].ref_image));
+  for (const std::string& line :
+       FilterWarnings(statistics.losses(), options_.patch_match)) {
+    log_(LogLevel::kWarning, line);
   }
-  const RunSummary summary = statistics.Summarize(
+  RunSummary summary = statistics.Summarize(
       names,
       backend_name,
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start)
           .count());
+  summary.num_fusable = CountFinalMaps(workspace, plan);
   if (statistics.AnyComputed() || statistics.AnyFailed()) {
     WriteRunRecord(workspace.StatePath(), statistics.Record(options_, summary));
   }
@@ -199,9 +278,13 @@ void PatchMatchController::RunStages(const Workspace& workspace,
                                      const StagePlan& plan,
                                      InputCache* inputs,
                                      WorkerPool* workers,
+                                     const CancelToken& cancel,
                                      RunStatistics* statistics) {
   const int num_stages = static_cast<int>(plan.stages().size());
   const int num_problems = static_cast<int>(problems.size());
+  // Images that are only sources fail by themselves: whoever reads their maps
+  // goes on without.
+  std::set<int> failed_sources;
   double total_work = 0, done_work = 0;
   for (int s = 0; s < num_stages; ++s) {
     for (int p = 0; p < num_problems; ++p) {
@@ -221,7 +304,7 @@ void PatchMatchController::RunStages(const Workspace& workspace,
     std::mutex mutex;
     int number = 0;
     workers->Run(needed, [&](StageRunner* runner, int p) {
-      cancel_.ThrowIfCancelled();
+      cancel.ThrowIfCancelled();
       const std::string& name = workspace.ImageName(problems[p].ref_image);
       const double work = WorkOf(plan, s, problems[p]);
       double counted = 0;  // of `work`, in done_work
@@ -236,22 +319,33 @@ void PatchMatchController::RunStages(const Workspace& workspace,
       {
         const std::lock_guard<std::mutex> lock(mutex);
         event.image_number = ++number;
-        if (statistics->HasFailed(name)) return;
+        if (statistics->HasFailed(name) || failed_sources.count(p) > 0) return;
       }
+      const bool is_reference = problems[p].is_reference;
+      if (!is_reference && inputs->Image(problems[p].ref_image) == nullptr) {
+        const std::lock_guard<std::mutex> lock(mutex);
+        failed_sources.insert(p);  // which the cache has told
+        return;
+      }
+      const std::string stage_name = plan.NameOf(s, problems[p].ref_image);
       log_(LogLevel::kInfo,
            fmt::format("Processing view {} / {} for {} ({})",
                        event.image_number,
                        num_needed,
                        name,
-                       stage.name));
+                       stage_name));
       RunControl control;
-      control.cancel = &cancel_;
+      control.cancel = &cancel;
       control.progress = count;
       try {
         const StageResult result = runner->Run(s, p, control);
         const std::lock_guard<std::mutex> lock(mutex);
-        statistics->Add(
-            name, stage, plan.CameraOf(s, problems[p].ref_image), result);
+        statistics->Add(name,
+                        is_reference,
+                        stage,
+                        stage_name,
+                        plan.CameraOf(s, problems[p].ref_image),
+                        result);
       } catch (const Error& error) {
         if (error.code() != ErrorCode::kBadInput) {
           const std::lock_guard<std::mutex> lock(mutex);
@@ -259,9 +353,14 @@ void PatchMatchController::RunStages(const Workspace& workspace,
           done_work -= counted;
           throw;
         }
-        log_(LogLevel::kError, error.what());
+        log_(is_reference ? LogLevel::kError : LogLevel::kWarning,
+             error.what());
         const std::lock_guard<std::mutex> lock(mutex);
-        statistics->AddFailure(name);
+        if (is_reference) {
+          statistics->AddFailure(name);
+        } else {
+          failed_sources.insert(p);
+        }
       }
       count(1);
     });

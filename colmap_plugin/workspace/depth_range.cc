@@ -39,11 +39,9 @@ std::vector<std::optional<DepthRange>> AutomaticRanges(
     const Workspace& workspace) {
   std::vector<std::vector<float>> depths(workspace.num_images());
   for (const SparsePoint& point : workspace.model().points) {
-    const Eigen::Vector3f xyz = point.xyz.cast<float>();
     for (const int image : point.track) {
       if (!workspace.usable(image)) continue;
-      const float z =
-          CamFromWorld(workspace.camera(image), {xyz.x(), xyz.y(), xyz.z()}).z;
+      const auto z = static_cast<float>(workspace.Depth(image, point.xyz));
       if (z > 0 && std::isfinite(z)) depths[image].push_back(z);
     }
   }
@@ -63,11 +61,8 @@ std::vector<std::optional<DepthRange>> AutomaticRanges(
 DepthRanges::DepthRanges(const Workspace& workspace,
                          double given_min,
                          double given_max)
-    : workspace_(workspace) {
-  if (given_min < 0 || given_max < 0) {
-    automatic_ = AutomaticRanges(workspace);
-    return;
-  }
+    : workspace_(workspace), automatic_(AutomaticRanges(workspace)) {
+  if (given_min < 0 || given_max < 0) return;
   given_ =
       Widened({static_cast<float>(given_min), static_cast<float>(given_max)});
   if (!(given_min <= given_max) || !IsRange(*given_)) {
@@ -83,7 +78,11 @@ DepthRanges::DepthRanges(const Workspace& workspace,
 }
 
 DepthRange DepthRanges::ForImage(int image) const {
-  if (given_) return *given_;
+  if (given_) {
+    const DepthRange seen = automatic_[image].value_or(*given_);
+    return {std::clamp(seen.min, given_->min / kSearchedBeyond, given_->min),
+            std::clamp(seen.max, given_->max, kSearchedBeyond * given_->max)};
+  }
   if (!automatic_[image]) {
     throw Error(ErrorCode::kBadInput,
                 fmt::format("image {} sees no sparse points, so its depth "

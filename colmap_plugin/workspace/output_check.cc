@@ -56,6 +56,7 @@ void PrepareOutputs(const Workspace& workspace,
                     uint64_t num_bytes) {
   std::set<fs::path> folders = {workspace.StatePath()};
   for (const StereoProblem& problem : problems) {
+    if (!problem.is_reference) continue;
     for (const MapKind kind :
          {MapKind::kDepth, MapKind::kNormal, MapKind::kConsistencyGraph}) {
       folders.insert(workspace.MapPath(problem.ref_image, kind, "photometric")
@@ -69,7 +70,8 @@ void PrepareOutputs(const Workspace& workspace,
   if (!fs::exists(workspace.FusionCfgPath(), error)) {
     std::vector<std::string> names;
     for (const StereoProblem& problem : problems) {
-      names.push_back(workspace.ImageName(problem.ref_image));
+      if (problem.is_reference)
+        names.push_back(workspace.ImageName(problem.ref_image));
     }
     WriteFusionCfg(workspace.FusionCfgPath(), names);
   }

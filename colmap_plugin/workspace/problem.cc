@@ -58,7 +58,13 @@ class ProblemReader {
         ++num_cut_;
       }
       const DepthRange range = ranges.ForImage(ref);
-      problems.push_back({ref, std::move(sources), range.min, range.max});
+      StereoProblem problem;
+      problem.ref_image = ref;
+      problem.src_images = std::move(sources);
+      problem.depth_min = range.min;
+      problem.depth_max = range.max;
+      problem.published = ranges.Published();
+      problems.push_back(std::move(problem));
     }
     if (num_cut_ > 0 && log_) {
       log_(LogLevel::kInfo,

@@ -32,7 +32,6 @@ class SourceSelector {
 
  private:
   const Workspace& workspace_;
-  std::vector<Eigen::Vector3d> centers_;  // of the cameras, world frame
   // Points of image i, each once: points_[begin_[i] .. begin_[i + 1]).
   std::vector<size_t> begin_;
   std::vector<uint32_t> points_;

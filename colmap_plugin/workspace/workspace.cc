@@ -57,6 +57,11 @@ std::pair<int, int> SizeOfPmvsImage(const fs::path& path) {
   return {size->width, size->height};
 }
 
+Eigen::Vector3d CenterOf(const SparseImage& image) {
+  return -(image.cam_from_world_rotation.conjugate() *
+           image.cam_from_world_translation);
+}
+
 }  // namespace
 
 Workspace::Workspace(const WorkspaceOptions& options, const LogSink& log)
@@ -75,8 +80,39 @@ int Workspace::ImageIndex(const std::string& name) const {
   return it == index_of_name_.end() ? -1 : it->second;
 }
 
+Camera Workspace::CameraAround(int index, int origin) const {
+  const Eigen::Vector3d t = model_.images[index].cam_from_world_rotation *
+                            (centers_[origin] - centers_[index]);
+  Camera camera = cameras_[index];
+  camera.t = {static_cast<float>(t.x()),
+              static_cast<float>(t.y()),
+              static_cast<float>(t.z())};
+  return camera;
+}
+
+double Workspace::Depth(int index, const Eigen::Vector3d& xyz) const {
+  return (model_.images[index].cam_from_world_rotation *
+          (xyz - centers_[index]))
+      .z();
+}
+
 fs::path Workspace::ImagePath(int index) const {
   return options_.path / (is_pmvs_ ? "visualize" : "images") / ImageName(index);
+}
+
+ImageDecoding Workspace::Decoding(int index) const {
+  ImageDecoding decoding;
+  const std::optional<ImageSize>& file = file_size(index);
+  if (!file) return decoding;
+  if (file->depth != SampleDepth::k8) decoding.stretch = deep_range_;
+  if (file->is_jpeg) {
+    const Camera& camera = cameras_[index];
+    decoding.reduction =
+        ReductionFor(file->width, file->height, camera.width, camera.height);
+    decoding.file_width = file->width;
+    decoding.file_height = file->height;
+  }
+  return decoding;
 }
 
 fs::path Workspace::StereoPath() const {
@@ -130,7 +166,9 @@ void Workspace::MakeCameras(const LogSink& log) {
     const std::optional<Camera> camera = MakeWorkingCamera(
         sparse_camera, image, size, options_.max_image_size, &why_not);
     cameras_.push_back(camera.value_or(Camera{}));
+    centers_.push_back(CenterOf(image));
     usable_.push_back(camera.has_value());
+    file_sizes_.push_back(size);
     if (!camera) {
       if (log)
         log(LogLevel::kWarning,

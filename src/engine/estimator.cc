@@ -130,6 +130,7 @@ void RunStage(Backend* backend,
       FitLocalPlanes(views.ref.camera,
                      *views.ref.image,
                      kFitTolerance / Parallax(views),
+                     {views.depth_min, views.depth_max},
                      map);
     }
     map->priors = std::vector<Plane>();  // gives the memory back, {} would not

@@ -29,6 +29,37 @@ def copy_pose(path, source, target):
     path.write_bytes(data)
 
 
+def _rotated(q, v):
+    """v turned by the quaternion (w, x, y, z)."""
+    w, x, y, z = q
+    t = [2 * (y * v[2] - z * v[1]), 2 * (z * v[0] - x * v[2]), 2 * (x * v[1] - y * v[0])]
+    return [
+        v[0] + w * t[0] + y * t[2] - z * t[1],
+        v[1] + w * t[1] + z * t[0] - x * t[2],
+        v[2] + w * t[2] + x * t[1] - y * t[0],
+    ]
+
+
+def transform_model(folder, scale=1, shift=(0, 0, 0)):
+    """World x becomes scale * x + shift."""
+    path = folder / "images.bin"
+    data = bytearray(path.read_bytes())
+    for begin, _, _ in image_records(data):
+        pose = struct.unpack_from("<7d", data, begin + 4)
+        away = _rotated(pose[:4], shift)
+        t = [scale * pose[4 + k] - away[k] for k in range(3)]
+        struct.pack_into("<3d", data, begin + 36, *t)
+    path.write_bytes(data)
+    path = folder / "points3D.bin"
+    data = bytearray(path.read_bytes())
+    offset = 8
+    for _ in range(struct.unpack_from("<Q", data, 0)[0]):
+        xyz = struct.unpack_from("<3d", data, offset + 8)
+        struct.pack_into("<3d", data, offset + 8, *(scale * x + s for x, s in zip(xyz, shift)))
+        offset += 51 + 8 * struct.unpack_from("<Q", data, offset + 43)[0]
+    path.write_bytes(data)
+
+
 def rename_image(path, image, name):
     """`name` as bytes, of any length."""
     data = path.read_bytes()

@@ -53,6 +53,36 @@ TEST(DepthRange, GivenRangeHoldsForAllImagesEvenWithoutPoints) {
   EXPECT_EQ(range.max, 8);
 }
 
+// What lies outside must be found to be dropped.
+TEST(DepthRange, AGivenRangeIsSearchedBeyondAsFarAsThePointsGo) {
+  TestWorkspace files;
+  files.AddImage("a.jpg", {0, 0, 0});
+  files.AddPoint({0, 0, 4}, {0});
+  files.AddPoint({0, 0, 8}, {0});
+  const Workspace workspace = files.Open();
+  const DepthRanges inner(workspace, 4, 5);
+  EXPECT_FLOAT_EQ(inner.ForImage(0).min, 3);
+  EXPECT_FLOAT_EQ(inner.ForImage(0).max, 10);
+  EXPECT_FLOAT_EQ(inner.Published().min, 4);
+  EXPECT_FLOAT_EQ(inner.Published().max, 5);
+  const DepthRange apart = DepthRanges(workspace, 1, 2).ForImage(0);
+  EXPECT_FLOAT_EQ(apart.min, 1);
+  EXPECT_FLOAT_EQ(apart.max, 8);  // far points may be wrong: 4 times
+  const DepthRange beyond = DepthRanges(workspace, 20, 30).ForImage(0);
+  EXPECT_FLOAT_EQ(beyond.min, 5);
+  EXPECT_FLOAT_EQ(beyond.max, 30);
+}
+
+TEST(DepthRange, WithAnAutomaticRangeEverythingIsPublished) {
+  TestWorkspace files;
+  files.AddImage("a.jpg", {0, 0, 0});
+  files.AddPoint({0, 0, 4}, {0});
+  const Workspace workspace = files.Open();
+  const DepthRange published = DepthRanges(workspace, -1, -1).Published();
+  EXPECT_EQ(published.min, 0);
+  EXPECT_GT(published.max, 1e30);
+}
+
 TEST(DepthRange, DegenerateGivenRangesAreWidened) {
   TestWorkspace files;
   files.AddImage("a.jpg", {0, 0, 0});

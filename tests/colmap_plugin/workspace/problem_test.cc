@@ -145,8 +145,8 @@ TEST_F(ProblemTest, UnknownDepthRangeNamesTheImage) {
   options_.depth_max = 2;
   const auto problems = Read("4.jpg\n0.jpg\n");
   ASSERT_EQ(problems.size(), 1u);
-  EXPECT_EQ(problems[0].depth_min, 1);
-  EXPECT_EQ(problems[0].depth_max, 2);
+  EXPECT_EQ(problems[0].published.min, 1);
+  EXPECT_EQ(problems[0].published.max, 2);
 }
 
 TEST_F(ProblemTest, UnusableImagesAreDroppedWithAWarning) {
