@@ -13,7 +13,10 @@ enum class FilterCriterion {
   kGeometry,       // the source found another depth, or none
   kCorrelation,    // the images differ
   kNumConsistent,  // some sources confirm the pixel, too few
-  kRange,          // confirmed, but outside the depth range given by hand
+  // Enough do, but not two thirds of those that see it, in a region without
+  // texture that no plane explains.
+  kUnexplained,
+  kRange,  // confirmed, but outside the depth range given by hand
 };
 
 // Short, for the run record and the summary.
@@ -29,6 +32,8 @@ inline const char* NameOf(FilterCriterion criterion) {
       return "correlation";
     case FilterCriterion::kNumConsistent:
       return "consistent views";
+    case FilterCriterion::kUnexplained:
+      return "unexplained";
     case FilterCriterion::kRange:
       break;
   }

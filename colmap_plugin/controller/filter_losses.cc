@@ -99,6 +99,10 @@ std::string Reason(FilterCriterion criterion,
           "fewer than {} sources confirm them: lower "
           "--PatchMatchStereo.filter_min_num_consistent",
           options.filter_min_num_consistent);
+    case FilterCriterion::kUnexplained:
+      return "nothing but chance decides there, as in a sky: no texture, no "
+             "plane that explains it, and many sources disagree; "
+             "--PatchMatchStereo.filter 0 keeps them";
     case FilterCriterion::kRange:
       break;
   }
@@ -120,6 +124,7 @@ nlohmann::json ToJson(const FilterLosses& losses) {
 FilterLosses CountFilterLosses(const ViewSet& views,
                                const HypothesisMap& map,
                                const std::vector<uint32_t>& consistent,
+                               const std::vector<bool>& keep,
                                const FilterParams& filter,
                                bool geometric) {
   const Judge judge(views, filter, geometric);
@@ -131,10 +136,12 @@ FilterLosses CountFilterLosses(const ViewSet& views,
          col += kStep) {
       ++num_looked_at;
       const size_t at = static_cast<size_t>(row) * map.width + col;
+      if (keep[at]) continue;
       const int num = __builtin_popcount(consistent[at]);
-      if (num >= filter.min_num_consistent) continue;
-      ++counts[num > 0 ? FilterCriterion::kNumConsistent
-                       : judge.Last(map.planes[at], col, row)];
+      ++counts[num == 0 ? judge.Last(map.planes[at], col, row)
+               : num < filter.min_num_consistent
+                   ? FilterCriterion::kNumConsistent
+                   : FilterCriterion::kUnexplained];
     }
   }
   FilterLosses losses;

@@ -21,10 +21,12 @@ nlohmann::json ToJson(const FilterLosses& losses);
 
 // A pixel that no source confirms is lost to the criterion that took the last
 // one. Looks at one pixel of sixteen: `consistent` is what
-// Backend::ConsistentViews() found with the same filter.
+// Backend::ConsistentViews() found with the same filter, `keep` what has enough
+// of it (NeededViews).
 FilterLosses CountFilterLosses(const ViewSet& views,
                                const HypothesisMap& map,
                                const std::vector<uint32_t>& consistent,
+                               const std::vector<bool>& keep,
                                const FilterParams& filter,
                                bool geometric);
 

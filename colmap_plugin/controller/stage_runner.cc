@@ -1,6 +1,7 @@
 #include "colmap_plugin/controller/stage_runner.h"
 
 #include "colmap_plugin/controller/method_options.h"
+#include "colmap_plugin/controller/needed_views.h"
 #include "colmap_plugin/controller/preview.h"
 #include "colmap_plugin/controller/ray_convention.h"
 #include "colmap_plugin/formats/consistency_graph.h"
@@ -180,11 +181,12 @@ void StageRunner::Publish(int stage,
         num_without_maps_ < static_cast<int>(views.srcs.size());
     consistent = backend_->ConsistentViews(map, params, geometric, control);
     keep.resize(consistent.size());
+    const NeededViews needed(views, map, params);
     for (size_t i = 0; i < keep.size(); ++i) {
-      keep[i] = __builtin_popcount(consistent[i]) >= params.min_num_consistent;
+      keep[i] = __builtin_popcount(consistent[i]) >= needed.At(i);
     }
     result->losses =
-        CountFilterLosses(views, map, consistent, params, geometric);
+        CountFilterLosses(views, map, consistent, keep, params, geometric);
     if (!plan_.WritesGraph(stage, image)) consistent = std::vector<uint32_t>();
   }
   if (!info.spec.passes.empty()) {
