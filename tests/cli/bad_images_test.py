@@ -120,7 +120,7 @@ class FewImages(CliTest):
     def test_the_option_that_fusion_of_few_images_needs_is_told(self):
         for views, option in ((2, "--StereoFusion.min_num_pixels 2\n"), (6, None)):
             with self.subTest(views):
-                result = self.run_tool(self.workspace(views=views), *FAST)
+                result = self.run_tool(self.workspace(views=views, width=48, height=36), *FAST)
                 self.assert_exit(result, 0)
                 if option:
                     self.assertIn(option, result.stdout)
@@ -150,7 +150,7 @@ class Filter(CliTest):
             ("filter_min_num_consistent=3", None),
         ):
             with self.subTest(option):
-                workspace = self.workspace()
+                workspace = self.workspace(width=64, height=48)
                 result = self.run_tool(workspace, *FAST, f"--PatchMatchStereo.{option}")
                 self.assert_exit(result, 0)
                 record = json.loads((workspace / "stereo/hpm_mvs/run.json").read_text())
