@@ -12,8 +12,7 @@ struct StereoProblem {
   int ref_image = -1;           // image index
   std::vector<int> src_images;  // image indices, best first, without repeats
                                 // and without ref_image
-  float depth_min =
-      0;  // model units, COLMAP's [0.75 P1, 1.25 P99] or as given by the user
+  float depth_min = 0;          // model units, see DepthRanges
   float depth_max = 0;
 };
 
@@ -27,8 +26,10 @@ struct ProblemOptions {
 };
 
 // In file order, one problem per reference (a repeated reference keeps its
-// first entry). Images without any source are skipped with COLMAP's warning.
-// Throws Error(kBadInput) naming cfg file and line.
+// first entry). Images without any source or of unknown depth range are skipped
+// with a warning, and another one says if fusion will find nothing in common
+// between the images. Throws Error(kBadInput) naming cfg file and line, or if
+// nothing is left to do.
 std::vector<StereoProblem> ReadProblems(const Workspace& workspace,
                                         const ProblemOptions& options,
                                         const LogSink& log);
