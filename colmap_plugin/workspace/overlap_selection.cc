@@ -21,13 +21,20 @@ constexpr double kMinShare = 0.05;
 OverlapSelector::OverlapSelector(const Workspace& workspace)
     : views_(workspace), seen_(workspace, views_) {}
 
-std::vector<int> OverlapSelector::Select(int ref_image,
-                                         const DepthRange& range,
-                                         double min_angle) const {
-  const std::vector<Eigen::Vector3d> points = PointsOf(ref_image, range);
-  std::vector<std::pair<double, int>> candidates;  // score, image
+std::vector<int> OverlapSelector::Select(
+    int ref_image,
+    const DepthRange& range,
+    double min_angle,
+    const std::vector<bool>& candidates) const {
+  std::vector<int> images;
   for (int image = 0; image < views_.size(); ++image) {
-    if (image == ref_image || !views_.usable(image)) continue;
+    if (candidates[image] && image != ref_image && views_.usable(image))
+      images.push_back(image);
+  }
+  if (images.empty()) return images;
+  const std::vector<Eigen::Vector3d> points = PointsOf(ref_image, range);
+  std::vector<std::pair<double, int>> scores;
+  for (const int image : images) {
     double score = 0;
     std::vector<double> angles;
     for (const Eigen::Vector3d& point : points) {
@@ -46,14 +53,14 @@ std::vector<int> OverlapSelector::Select(int ref_image,
     const auto quarter = angles.begin() + static_cast<std::ptrdiff_t>(
                                               3 * (angles.size() - 1) / 4);
     std::nth_element(angles.begin(), quarter, angles.end());
-    if (*quarter >= min_angle * kDegree) candidates.emplace_back(score, image);
+    if (*quarter >= min_angle * kDegree) scores.emplace_back(score, image);
   }
   std::stable_sort(
-      candidates.begin(), candidates.end(), [](const auto& a, const auto& b) {
+      scores.begin(), scores.end(), [](const auto& a, const auto& b) {
         return a.first > b.first;
       });
-  std::vector<int> images;
-  for (const auto& [score, image] : candidates) images.push_back(image);
+  images.clear();
+  for (const auto& [score, image] : scores) images.push_back(image);
   return images;
 }
 

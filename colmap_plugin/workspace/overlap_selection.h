@@ -13,14 +13,15 @@ class OverlapSelector {
  public:
   explicit OverlapSelector(const Workspace& workspace);
 
-  // Best first: the images into which most of the reference's points project,
-  // weighted by their angles; three quarters of the points as in
-  // SourceSelector::Select() for min_angle (degrees). The points are the sparse
-  // points that the reference sees, or, where these are too few, its field of
-  // view within `range`.
+  // Best first, of those marked in `candidates`: the images into which most of
+  // the reference's points project, weighted by their angles; three quarters of
+  // the points as in SourceSelector::Select() for min_angle (degrees). The
+  // points are the sparse points that the reference sees, or, where these are
+  // too few, its field of view within `range`.
   std::vector<int> Select(int ref_image,
                           const DepthRange& range,
-                          double min_angle) const;
+                          double min_angle,
+                          const std::vector<bool>& candidates) const;
 
  private:
   std::vector<Eigen::Vector3d> PointsOf(int image,

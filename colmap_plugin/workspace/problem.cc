@@ -44,7 +44,10 @@ class ProblemReader {
         path_(options.config_path.empty() ? workspace.PatchMatchCfgPath()
                                           : options.config_path),
         selector_(workspace),
-        ranges_(workspace, options.depth_min, options.depth_max) {}
+        ranges_(workspace, options.depth_min, options.depth_max) {
+    for (int i = 0; i < workspace.num_images(); ++i)
+      badly_tracked_.push_back(selector_.NumSharedPoints(i) < kEnoughPoints);
+  }
 
   std::vector<StereoProblem> Read() {
     std::vector<bool> seen(workspace_.num_images(), false);
@@ -213,20 +216,30 @@ class ProblemReader {
                                const std::optional<DepthRange>& range) const {
     std::vector<int> sources = selector_.Select(
         ref, options_.min_triangulation_angle, entry.max_num_auto);
-    AddOverlapping(ref, range, options_.min_triangulation_angle, &sources);
-    const auto max_num = static_cast<size_t>(entry.max_num_auto);
-    if (entry.max_num_auto >= 0 && sources.size() > max_num)
-      sources.resize(max_num);
+    const size_t max_num = entry.max_num_auto < 0
+                               ? MaxNumSources()
+                               : static_cast<size_t>(entry.max_num_auto);
+    // Images whose tracks tell too little are not missed by others, either.
+    if (sources.size() < max_num) {
+      AddOverlapping(ref,
+                     range,
+                     options_.min_triangulation_angle,
+                     badly_tracked_[ref] ? all_ : badly_tracked_,
+                     &sources);
+      if (sources.size() > max_num) sources.resize(max_num);
+    }
     return sources;
   }
 
-  // Where tracks tell too little, views that look at the same place follow.
+  // Views that look at the same place, behind those that share points.
   void AddOverlapping(int ref,
                       const std::optional<DepthRange>& range,
                       double min_angle,
+                      const std::vector<bool>& candidates,
                       std::vector<int>* sources) const {
-    if (!range || selector_.NumSharedPoints(ref) >= kEnoughPoints) return;
-    for (const int image : overlap_.Select(ref, *range, min_angle)) {
+    if (!range) return;
+    for (const int image :
+         overlap_.Select(ref, *range, min_angle, candidates)) {
       if (std::find(sources->begin(), sources->end(), image) == sources->end())
         sources->push_back(image);
     }
@@ -238,7 +251,8 @@ class ProblemReader {
                               const std::optional<DepthRange>& range) const {
     std::vector<int> sources =
         selector_.Select(ref, /*min_angle=*/0, /*max_num=*/-1);
-    AddOverlapping(ref, range, /*min_angle=*/0, &sources);
+    if (badly_tracked_[ref])
+      AddOverlapping(ref, range, /*min_angle=*/0, all_, &sources);
     std::vector<bool> taken(workspace_.num_images(), false);
     taken[ref] = true;
     for (const int source : sources) taken[source] = true;
@@ -277,6 +291,10 @@ class ProblemReader {
   const SourceSelector selector_;
   const DepthRanges ranges_;
   const OverlapSelector overlap_{workspace_};
+  const std::vector<bool> all_ =
+      std::vector<bool>(workspace_.num_images(), true);
+  // Images that share too few points with others for a choice of sources.
+  std::vector<bool> badly_tracked_;
   int num_cut_ = 0;
   Affected without_sources_;
   Affected without_range_;

@@ -233,6 +233,21 @@ TEST_F(WithoutTracksTest, WithoutPointsThePosesDo) {
   ExpectNeighboursAsSources();
 }
 
+TEST_F(WithoutTracksTest, AnImageWithoutTracksHelpsTheOthers) {
+  for (int i = 0; i < 300; ++i) {
+    files_.AddPoint(
+        {std::cos(i), std::cos(2.1 * i), std::sin(i)},
+        i % 2 == 0 ? std::vector<int>{} : std::vector<int>{5, 6, 8});
+  }
+  files_.WriteCfg("6.jpg\n__auto__, 4\n8.jpg\n__auto__, 2\n");
+  const auto problems = ReadProblems(files_.Open(), {}, files_.Log());
+  ASSERT_EQ(problems.size(), 2u);
+  // Those that share tracks come first, and are all if they are enough.
+  EXPECT_THAT(problems[0].src_images, ElementsAre(5, 8, 7, testing::_));
+  EXPECT_THAT(problems[1].src_images, ElementsAre(5, 6));
+  EXPECT_THAT(files_.Warnings(), IsEmpty());
+}
+
 TEST_F(WithoutTracksTest, TracksOfOneImageDoNotHelpFusion) {
   for (int i = 0; i < 20 * kNumImages; ++i) {
     files_.AddPoint({std::cos(i), std::cos(2.1 * i), std::sin(i)},
