@@ -119,8 +119,7 @@ class ProblemReader {
           "The depth range of {} is estimated, from the places of cameras and "
           "sparse points: fewer than {} points have a track there. Set both "
           "--PatchMatchStereo.depth_min and --PatchMatchStereo.depth_max if "
-          "you "
-          "know better.",
+          "you know better.",
           Describe(estimated_),
           kEnoughPoints);
     }

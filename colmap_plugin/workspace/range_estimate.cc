@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace hpm {
 namespace {
@@ -26,6 +27,12 @@ std::vector<double> Geometric(double from, double to, int count) {
   return values;
 }
 
+std::optional<DepthRange> Joined(const std::optional<DepthRange>& a,
+                                 const std::optional<DepthRange>& b) {
+  if (!a || !b) return a ? a : b;
+  return DepthRange{std::min(a->min, b->min), std::max(a->max, b->max)};
+}
+
 }  // namespace
 
 RangeEstimator::RangeEstimator(const Workspace& workspace)
@@ -36,22 +43,35 @@ std::optional<DepthRange> RangeEstimator::Estimate(
     const std::vector<float>& tracked,
     const std::vector<std::optional<DepthRange>>& known) const {
   if (!views_.usable(image)) return std::nullopt;
-  std::vector<float> depths = tracked;
-  for (const SeenPoints::SeenPoint& point : seen_.ForImage(image))
-    depths.push_back(static_cast<float>(point.depth));
+  std::vector<float> depths = SeenDepths(image);
+  depths.insert(depths.end(), tracked.begin(), tracked.end());
   if (depths.size() < kEnoughPoints) {
     const std::vector<float> more = DepthsOfNeighbours(image, known);
     depths.insert(depths.end(), more.begin(), more.end());
   }
-  if (depths.empty()) return RangeOfParallax(image);
-  const std::optional<DepthRange> range = RangeOfDepths(std::move(depths));
-  if (!range || tracked.empty()) return range;
-  // Of many points a few at the end are cut off as outliers; but those of
+  const bool is_enough = depths.size() >= kEnoughPoints || !tracked.empty();
+  // Of many points a few at the ends are cut off as outliers; but those of
   // tracks are few and matched.
-  const std::optional<DepthRange> own = RangeOfDepths(tracked);
-  if (!own) return range;
-  return DepthRange{std::min(range->min, own->min),
-                    std::max(range->max, own->max)};
+  const std::optional<DepthRange> range =
+      Joined(RangeOfDepths(std::move(depths)), RangeOfDepths(tracked));
+  return is_enough ? range : Joined(range, RangeOfParallax(image));
+}
+
+std::vector<float> RangeEstimator::SeenDepths(int image) const {
+  std::vector<float> depths;
+  for (const SeenPoints::SeenPoint& point : seen_.ForImage(image))
+    depths.push_back(static_cast<float>(point.depth));
+  return depths;
+}
+
+std::optional<DepthRange> RangeEstimator::RangeOfSeenPoints(int image) const {
+  const auto [entry, is_new] = seen_ranges_.try_emplace(image);
+  if (is_new) {
+    std::vector<float> depths = SeenDepths(image);
+    if (depths.size() >= kEnoughPoints)
+      entry->second = RangeOfDepths(std::move(depths));
+  }
+  return entry->second;
 }
 
 // From near to far; of many, at most kMaxOthers of all distances.
@@ -73,9 +93,10 @@ std::vector<float> RangeEstimator::DepthsOfNeighbours(
     int image, const std::vector<std::optional<DepthRange>>& known) const {
   std::vector<float> depths;
   for (const int other : SomeOthers(image)) {
-    if (!known[other]) continue;
-    for (const double depth :
-         Geometric(known[other]->min, known[other]->max, 5)) {
+    const std::optional<DepthRange> range =
+        known[other] ? known[other] : RangeOfSeenPoints(other);
+    if (!range) continue;
+    for (const double depth : Geometric(range->min, range->max, 5)) {
       for (const Eigen::Vector3d& point : views_.GridAt(other, depth)) {
         const auto projection = views_.Project(image, point);
         if (projection) depths.push_back(static_cast<float>(projection->depth));

@@ -155,17 +155,30 @@ TEST(DepthRange, AFewTrackedPointsAreWidenedByThoseThatProject) {
 }
 
 TEST(DepthRange, WhereNoPointProjectsTheRangesOfTheOthersTell) {
+  for (const std::vector<int>& track : {std::vector<int>{1}, {}}) {
+    TestWorkspace files;
+    files.AddImage("a.jpg", {0, 0, 0});
+    files.AddImage("b.jpg", {3, 0, 0});
+    // At the right border of b, where a does not look.
+    for (int i = 0; i < 20; ++i) files.AddPoint({8.9, 0.1 * i, 8}, track);
+    const Workspace workspace = files.Open();
+    const DepthRange range = DepthRanges(workspace, -1, -1).ForImage(0).value();
+    EXPECT_LT(range.min, 7);
+    EXPECT_GT(range.min, 3);
+    EXPECT_GT(range.max, 9);
+    EXPECT_LT(range.max, 16);
+  }
+}
+
+TEST(DepthRange, AFewPointsWithoutTracksAreWidenedByThePoses) {
   TestWorkspace files;
-  files.AddImage("a.jpg", {0, 0, 0});
-  files.AddImage("b.jpg", {3, 0, 0});
-  // At the right border of b, where a does not look.
-  for (int i = 0; i < 20; ++i) files.AddPoint({8.9, 0.1 * i, 8}, {1});
+  for (int i = 0; i < 3; ++i)
+    files.AddImage(fmt::format("{}.jpg", i), {1.0 * i, 0, 0});
+  for (int i = 0; i < 3; ++i) files.AddPoint({0.1 * i, 0, 100}, {});
   const Workspace workspace = files.Open();
   const DepthRange range = DepthRanges(workspace, -1, -1).ForImage(0).value();
-  EXPECT_LT(range.min, 7);
-  EXPECT_GT(range.min, 3);
-  EXPECT_GT(range.max, 9);
-  EXPECT_LT(range.max, 16);
+  EXPECT_LT(range.min, 4);
+  EXPECT_FLOAT_EQ(range.max, 125);
 }
 
 TEST(DepthRange, WithoutAnyPointsThePosesTell) {
