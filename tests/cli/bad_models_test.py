@@ -166,7 +166,7 @@ class WithoutTracks(CliTest):
 
     def test_an_image_of_few_tracks_stops_nobody_and_suffers_little(self):
         plain = self.run_plain()
-        for num_points in (0, 1, 3):
+        for num_points in (0, 2):
             for cfg in ("__auto__, 20", "__all__"):
                 with self.subTest(points=num_points, cfg=cfg):
                     workspace = self.workspace()
