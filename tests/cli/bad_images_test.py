@@ -96,7 +96,7 @@ class BadImages(CliTest):
 
 
 class FewImages(CliTest):
-    def test_an_image_without_sources_is_skipped_with_a_warning(self):
+    def test_a_single_image_is_exit_3_and_says_why(self):
         workspace = self.workspace(views=1)
         for sources in ("__auto__, 20", "__all__"):
             (workspace / "stereo/patch-match.cfg").write_text(f"view00.png\n{sources}\n")
@@ -106,8 +106,8 @@ class FewImages(CliTest):
                 "--PatchMatchStereo.depth_min=1",
                 "--PatchMatchStereo.depth_max=10",
             )
-            self.assert_exit(result, 0)
-            self.assertIn("view00.png", result.stderr)
+            self.assert_exit(result, 3, "patch-match.cfg", "source images")
+            self.assertIn("view00.png, because it has no source images", result.stderr)
             self.assertEqual(map_files(workspace), {})
 
     def test_one_source_is_enough(self):
