@@ -33,8 +33,10 @@ struct ProblemOptions {
 };
 
 // In file order, one problem per reference (a repeated reference keeps its
-// first entry). Images without any source are skipped with COLMAP's warning.
-// Throws Error(kBadInput) naming cfg file and line.
+// first entry). Images without any source or of unknown depth range are skipped
+// with a warning, and another one says if fusion will find nothing in common
+// between the images. Throws Error(kBadInput) naming cfg file and line, or if
+// nothing is left to do.
 std::vector<StereoProblem> ReadProblems(const Workspace& workspace,
                                         const ProblemOptions& options,
                                         const LogSink& log);

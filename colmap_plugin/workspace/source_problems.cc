@@ -1,7 +1,6 @@
 #include "colmap_plugin/workspace/source_problems.h"
 
 #include "colmap_plugin/workspace/source_selection.h"
-#include "src/base/error.h"
 
 #include <algorithm>
 #include <map>
@@ -12,7 +11,7 @@ namespace {
 // COLMAP's own number in patch-match.cfg.
 constexpr int kMaxNumSources = 20;
 
-// Of an image without points in front of it: that of the images which see the
+// Of an image whose own range nothing tells: that of the images which see the
 // same.
 DepthRange RangeOf(const std::vector<const StereoProblem*>& listed_by) {
   DepthRange range = {listed_by.front()->depth_min,
@@ -22,16 +21,6 @@ DepthRange RangeOf(const std::vector<const StereoProblem*>& listed_by) {
     range.max = std::max(range.max, problem->depth_max);
   }
   return range;
-}
-
-DepthRange RangeOf(const DepthRanges& ranges,
-                   int image,
-                   const std::vector<const StereoProblem*>& listed_by) {
-  try {
-    return ranges.ForImage(image);
-  } catch (const Error&) {
-    return RangeOf(listed_by);
-  }
 }
 
 }  // namespace
@@ -64,7 +53,8 @@ std::vector<StereoProblem> SourceProblems(
       if (problem.src_images.size() > static_cast<size_t>(max_num))
         problem.src_images.resize(max_num);
     }
-    const DepthRange range = RangeOf(ranges, image, references);
+    const DepthRange range =
+        ranges.ForImage(image).value_or(RangeOf(references));
     problem.depth_min = range.min;
     problem.depth_max = range.max;
     result.push_back(problem);

@@ -107,6 +107,17 @@ std::vector<SourceCandidate> SourceSelector::Candidates(int ref_image) const {
   return candidates;
 }
 
+size_t SourceSelector::NumSharedPoints(int ref_image) const {
+  size_t num_shared = 0;
+  for (size_t k = begin_[ref_image]; k < begin_[ref_image + 1]; ++k) {
+    const std::vector<int>& track = workspace_.model().points[points_[k]].track;
+    num_shared += std::any_of(track.begin(), track.end(), [&](int image) {
+      return image != ref_image && workspace_.usable(image);
+    });
+  }
+  return num_shared;
+}
+
 std::vector<int> SourceSelector::Select(int ref_image,
                                         double min_angle,
                                         int max_num) const {

@@ -26,6 +26,9 @@ class SourceSelector {
   // first, then by image index.
   std::vector<SourceCandidate> Candidates(int ref_image) const;
 
+  // Points of which the image shares a track with another, usable image.
+  size_t NumSharedPoints(int ref_image) const;
+
   // The first max_num candidates (negative: all) with an angle of at least
   // min_angle degrees.
   std::vector<int> Select(int ref_image, double min_angle, int max_num) const;

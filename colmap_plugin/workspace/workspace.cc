@@ -69,7 +69,7 @@ Workspace::Workspace(const WorkspaceOptions& options, const LogSink& log)
   if (is_pmvs_) {
     ReadPmvs();
   } else {
-    model_ = ReadSparseModel(options_.path / "sparse");
+    model_ = ReadSparseModel(options_.path / "sparse", log);
   }
   CheckNames();
   MakeCameras(log);

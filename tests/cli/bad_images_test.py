@@ -96,7 +96,7 @@ class BadImages(CliTest):
 
 
 class FewImages(CliTest):
-    def test_an_image_without_sources_is_skipped_with_a_warning(self):
+    def test_a_single_image_is_exit_3_and_says_why(self):
         workspace = self.workspace(views=1)
         for sources in ("__auto__, 20", "__all__"):
             (workspace / "stereo/patch-match.cfg").write_text(f"view00.png\n{sources}\n")
@@ -106,8 +106,8 @@ class FewImages(CliTest):
                 "--PatchMatchStereo.depth_min=1",
                 "--PatchMatchStereo.depth_max=10",
             )
-            self.assert_exit(result, 0)
-            self.assertIn("view00.png", result.stderr)
+            self.assert_exit(result, 3, "patch-match.cfg", "source images")
+            self.assertIn("view00.png, because it has no source images", result.stderr)
             self.assertEqual(map_files(workspace), {})
 
     def test_one_source_is_enough(self):
@@ -120,7 +120,7 @@ class FewImages(CliTest):
     def test_the_option_that_fusion_of_few_images_needs_is_told(self):
         for views, option in ((2, "--StereoFusion.min_num_pixels 2\n"), (6, None)):
             with self.subTest(views):
-                result = self.run_tool(self.workspace(views=views), *FAST)
+                result = self.run_tool(self.workspace(views=views, width=48, height=36), *FAST)
                 self.assert_exit(result, 0)
                 if option:
                     self.assertIn(option, result.stdout)
@@ -150,7 +150,7 @@ class Filter(CliTest):
             ("filter_min_num_consistent=3", None),
         ):
             with self.subTest(option):
-                workspace = self.workspace()
+                workspace = self.workspace(width=64, height=48)
                 result = self.run_tool(workspace, *FAST, f"--PatchMatchStereo.{option}")
                 self.assert_exit(result, 0)
                 record = json.loads((workspace / "stereo/hpm_mvs/run.json").read_text())

@@ -82,12 +82,32 @@ def set_camera_sizes(path, width, height):
     path.write_bytes(data)
 
 
-def remove_points(folder):
-    """No sparse points at all, and no observations of them."""
-    (folder / "points3D.bin").write_bytes(struct.pack("<Q", 0))
-    path = folder / "images.bin"
+def remove_observations(path):
     data = path.read_bytes()
     out = data[:8]
     for begin, _, points in image_records(data):
         out += data[begin:points] + struct.pack("<Q", 0)
     path.write_bytes(out)
+
+
+def remove_points(folder):
+    """No sparse points at all, and no observations of them."""
+    (folder / "points3D.bin").write_bytes(struct.pack("<Q", 0))
+    remove_observations(folder / "images.bin")
+
+
+def thin_tracks(folder, keep):
+    """Keeps the track elements (point number, image id) that `keep` accepts; all points stay."""
+    path = folder / "points3D.bin"
+    data = path.read_bytes()
+    count = struct.unpack_from("<Q", data, 0)[0]
+    out, offset = data[:8], 8
+    for point in range(count):
+        length = struct.unpack_from("<Q", data, offset + 43)[0]
+        begin = offset + 51
+        elements = [data[begin + 8 * i : begin + 8 * i + 8] for i in range(length)]
+        kept = [e for e in elements if keep(point, struct.unpack_from("<I", e)[0])]
+        out += data[offset : offset + 43] + struct.pack("<Q", len(kept)) + b"".join(kept)
+        offset = begin + 8 * length
+    path.write_bytes(out)
+    remove_observations(folder / "images.bin")
