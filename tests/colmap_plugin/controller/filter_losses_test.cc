@@ -1,5 +1,7 @@
 #include "colmap_plugin/controller/filter_losses.h"
 
+#include "colmap_plugin/controller/needed_views.h"
+
 #include <cmath>
 
 #include <gmock/gmock.h>
@@ -59,7 +61,12 @@ class FilterLossesTest : public testing::Test {
   }
 
   FilterLosses Count() const {
-    return CountFilterLosses(views_, map_, consistent_, filter_, geometric_);
+    const NeededViews needed(views_, map_, filter_);
+    std::vector<bool> keep;
+    for (size_t i = 0; i < consistent_.size(); ++i)
+      keep.push_back(__builtin_popcount(consistent_[i]) >= needed.At(i));
+    return CountFilterLosses(
+        views_, map_, consistent_, keep, filter_, geometric_);
   }
 
   ViewSet views_ = {};
@@ -105,6 +112,20 @@ TEST_F(FilterLossesTest, OtherImages) {
   EXPECT_GT(losses.at(FilterCriterion::kCorrelation), 0.7);
   geometric_ = false;
   EXPECT_EQ(Count(), All(FilterCriterion::kCorrelation));
+}
+
+// Of five sources one looks past the wall, so that three of four must agree.
+TEST_F(FilterLossesTest, UnexplainedPixelsNeedMostOfThoseThatSeeThem) {
+  for (const float x : {0.3f, -0.3f, 0.4f, -0.4f, 20.0f}) AddSource(x, kDepth);
+  std::fill(consistent_.begin(), consistent_.end(), 0b0011);
+  EXPECT_THAT(Count(), IsEmpty());
+  map_.unexplained.assign(map_.planes.size(), true);
+  // Fewer see the wall at the borders of the image.
+  const FilterLosses losses = Count();
+  ASSERT_EQ(losses.count(FilterCriterion::kUnexplained), 1u);
+  EXPECT_GT(losses.at(FilterCriterion::kUnexplained), 0.7);
+  std::fill(consistent_.begin(), consistent_.end(), 0b0111);
+  EXPECT_THAT(Count(), IsEmpty());
 }
 
 TEST_F(FilterLossesTest, TooFewConfirmations) {
