@@ -61,14 +61,14 @@ TEST(DepthRange, AGivenRangeIsSearchedBeyondAsFarAsThePointsGo) {
   files.AddPoint({0, 0, 8}, {0});
   const Workspace workspace = files.Open();
   const DepthRanges inner(workspace, 4, 5);
-  EXPECT_FLOAT_EQ(inner.ForImage(0).min, 3);
-  EXPECT_FLOAT_EQ(inner.ForImage(0).max, 10);
+  EXPECT_FLOAT_EQ(inner.ForImage(0)->min, 3);
+  EXPECT_FLOAT_EQ(inner.ForImage(0)->max, 10);
   EXPECT_FLOAT_EQ(inner.Published().min, 4);
   EXPECT_FLOAT_EQ(inner.Published().max, 5);
-  const DepthRange apart = DepthRanges(workspace, 1, 2).ForImage(0);
+  const DepthRange apart = *DepthRanges(workspace, 1, 2).ForImage(0);
   EXPECT_FLOAT_EQ(apart.min, 1);
   EXPECT_FLOAT_EQ(apart.max, 8);  // far points may be wrong: 4 times
-  const DepthRange beyond = DepthRanges(workspace, 20, 30).ForImage(0);
+  const DepthRange beyond = *DepthRanges(workspace, 20, 30).ForImage(0);
   EXPECT_FLOAT_EQ(beyond.min, 5);
   EXPECT_FLOAT_EQ(beyond.max, 30);
 }
