@@ -57,8 +57,8 @@ TEST(DepthRange, GivenRangeHoldsForAllImagesEvenWithoutPoints) {
 TEST(DepthRange, AGivenRangeIsSearchedBeyondAsFarAsThePointsGo) {
   TestWorkspace files;
   files.AddImage("a.jpg", {0, 0, 0});
-  files.AddPoint({0, 0, 4}, {0});
-  files.AddPoint({0, 0, 8}, {0});
+  for (int i = 0; i < kEnoughPoints; ++i)
+    files.AddPoint({0, 0, i % 2 == 0 ? 4.0 : 8.0}, {0});
   const Workspace workspace = files.Open();
   const DepthRanges inner(workspace, 4, 5);
   EXPECT_FLOAT_EQ(inner.ForImage(0)->min, 3);
