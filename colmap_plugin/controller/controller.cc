@@ -113,7 +113,7 @@ RunSummary PatchMatchController::Run() {
   }
   const Schedule schedule = MakeSchedule(MakeScheduleOptions(options_));
   const StagePlan plan(workspace, problems, schedule, options_);
-  PrepareOutputs(workspace, problems, BytesToWrite(problems, plan));
+  PrepareOutputs(workspace, problems, BytesToWrite(problems, plan), log_);
   if (plan.ReplacesForeignMaps()) {
     log_(LogLevel::kWarning,
          "maps made with other options or by another program are computed "
@@ -171,14 +171,14 @@ RunSummary PatchMatchController::Run() {
       options_.hpm.device != "cuda",
       log_);
   RunStatistics statistics;
+  for (const StereoProblem& problem : problems) {
+    // What is wrong was said when the workspace was read.
+    if (!CanBeComputed(workspace, problem))
+      statistics.AddFailure(workspace.ImageName(problem.ref_image));
+  }
   RunStages(workspace, problems, plan, &inputs, &workers, &statistics);
   if (!statistics.AnyFailed()) RemoveInnerMaps(workspace, plan);
 
-  if (!options_.patch_match.allow_missing_files) {
-    for (const std::string& name : inputs.UnreadableImages()) {
-      statistics.AddFailure(name);
-    }
-  }
   std::vector<std::string> names;
   for (const StereoProblem& problem : problems) {
     names.push_back(workspace.ImageName(problem.ref_image));

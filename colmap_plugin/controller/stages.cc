@@ -166,7 +166,8 @@ StagePlan::StagePlan(const Workspace& workspace,
       }
     }
     for (int p = 0; p < num_problems; ++p) {
-      needed_[s][p] = wanted[p] && (options.hpm.overwrite || !IsFinished(s, p));
+      needed_[s][p] = wanted[p] && CanBeComputed(workspace, problems[p]) &&
+                      (options.hpm.overwrite || !IsFinished(s, p));
     }
   }
 }

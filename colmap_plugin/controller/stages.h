@@ -36,8 +36,9 @@ class StagePlan {
             const ControllerOptions& options);
 
   const std::vector<Stage>& stages() const { return stages_; }
-  // Whether problem p has to be computed in stage s: its final maps, or maps
-  // that others still need, are missing, damaged or made with other options.
+  // Whether problem p has to be computed in stage s, and can be: its final
+  // maps, or maps that others still need, are missing, damaged or made with
+  // other options.
   bool IsNeeded(int s, int p) const { return needed_[s][p]; }
   int CountNeeded(int s) const;
   // True if maps exist that were made with other options or by another program.

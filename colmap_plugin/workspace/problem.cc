@@ -2,6 +2,7 @@
 
 #include "colmap_plugin/formats/image_name.h"
 #include "colmap_plugin/formats/patch_match_cfg.h"
+#include "colmap_plugin/workspace/cfg_check.h"
 #include "colmap_plugin/workspace/depth_range.h"
 #include "colmap_plugin/workspace/source_selection.h"
 #include "src/base/error.h"
@@ -31,7 +32,9 @@ class ProblemReader {
         workspace_, options_.depth_min, options_.depth_max);
     std::vector<bool> seen(workspace_.num_images(), false);
     std::vector<StereoProblem> problems;
-    for (const PatchMatchCfgEntry& entry : ReadPatchMatchCfg(path_)) {
+    const PatchMatchCfg cfg = ReadCfg();
+    CheckCfg(workspace_, path_, cfg, log_);
+    for (const PatchMatchCfgEntry& entry : cfg.entries) {
       const int ref = IndexOf(entry.ref_name, entry.line);
       std::vector<int> sources =
           Sources(entry, ref);  // also checks the names of the line
@@ -48,7 +51,9 @@ class ProblemReader {
              entry.ref_name);
         continue;
       }
-      if (sources.empty()) {
+      const bool has_sources = !sources.empty();
+      TakeThoseWithPictures(entry, &sources);
+      if (!has_sources) {
         Warn("Ignoring reference image {}, because it has no source images.",
              entry.ref_name);
         continue;
@@ -72,6 +77,19 @@ class ProblemReader {
   }
 
  private:
+  PatchMatchCfg ReadCfg() const {
+    std::error_code ignored;
+    if (!std::filesystem::exists(path_, ignored)) {
+      throw Error(ErrorCode::kBadInput,
+                  fmt::format("{} is missing: it lists the images to compute; "
+                              "give it back, run image_undistorter, or write "
+                              "two lines per image: its name, then '__auto__, "
+                              "20'",
+                              path_.string()));
+    }
+    return ReadPatchMatchCfg(path_);
+  }
+
   template <class... Args>
   void Warn(fmt::format_string<Args...> format, Args&&... args) const {
     if (log_)
@@ -87,12 +105,12 @@ class ProblemReader {
     const int index = workspace_.ImageIndex(name);
     if (index < 0) {
       throw Error(ErrorCode::kBadInput,
-                  fmt::format("{}, entry of line {}: image {} does not exist "
-                              "in the sparse model; "
-                              "correct the name or remove it",
+                  fmt::format("{}:{}: image {} does not exist in the sparse "
+                              "model; {}",
                               path_.string(),
                               line,
-                              QuotedName(name)));
+                              QuotedName(name),
+                              RemedyForName(workspace_, name)));
     }
     return index;
   }
@@ -100,14 +118,27 @@ class ProblemReader {
   std::vector<int> Sources(const PatchMatchCfgEntry& entry, int ref) const {
     switch (entry.sources) {
       case PatchMatchCfgEntry::Sources::kAuto:
+        if (entry.max_num_auto == 0) return {};
         return selector_.Select(
-            ref, options_.min_triangulation_angle, entry.max_num_auto);
+            ref, options_.min_triangulation_angle, /*max_num=*/-1);
       case PatchMatchCfgEntry::Sources::kAll:
         return AllSources(ref);
       case PatchMatchCfgEntry::Sources::kList:
         break;
     }
     return ListedSources(entry, ref);
+  }
+
+  // The number of "__auto__, N" is met with images that have a picture.
+  void TakeThoseWithPictures(const PatchMatchCfgEntry& entry,
+                             std::vector<int>* sources) const {
+    const auto without = [this](int i) { return !workspace_.has_picture(i); };
+    sources->erase(std::remove_if(sources->begin(), sources->end(), without),
+                   sources->end());
+    if (entry.sources != PatchMatchCfgEntry::Sources::kAuto) return;
+    const auto max_num = static_cast<size_t>(entry.max_num_auto);
+    if (entry.max_num_auto >= 0 && sources->size() > max_num)
+      sources->resize(max_num);
   }
 
   // Overlapping images first, so that the cut to MaxNumSources keeps the useful
@@ -130,7 +161,7 @@ class ProblemReader {
     std::vector<bool> taken(workspace_.num_images(), false);
     taken[ref] = true;
     for (const std::string& name : entry.src_names) {
-      const int source = IndexOf(name, entry.line);
+      const int source = IndexOf(name, entry.src_line);
       if (taken[source]) continue;
       taken[source] = true;
       if (workspace_.usable(source)) {
@@ -155,6 +186,11 @@ class ProblemReader {
 };
 
 }  // namespace
+
+bool CanBeComputed(const Workspace& workspace, const StereoProblem& problem) {
+  return workspace.has_picture(problem.ref_image) &&
+         !problem.src_images.empty();
+}
 
 std::vector<StereoProblem> ReadProblems(const Workspace& workspace,
                                         const ProblemOptions& options,

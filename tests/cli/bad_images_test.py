@@ -49,16 +49,21 @@ class BadImages(CliTest):
         path.write_bytes(good)
         self.assert_rerun_completes(workspace)
 
-    def test_allow_missing_files_leaves_a_missing_source_out(self):
-        workspace = self.workspace()
-        (workspace / "images/view02.png").unlink()
-        (workspace / "stereo/patch-match.cfg").write_text(
-            "".join(f"view0{i}.png\n__auto__, 20\n" for i in (0, 1, 3))
-        )
-        result = self.run_tool(workspace, *FAST, "--PatchMatchStereo.allow_missing_files=1")
-        self.assert_exit(result, 0)
-        self.assertIn("view02.png", result.stdout + result.stderr)
-        self.assert_complete(workspace, ["view00.png", "view01.png", "view03.png"])
+    def test_a_source_without_file_is_left_out_and_no_failure(self):
+        """Only references count as failed: all maps that were asked for exist."""
+        for options in ([], ["--PatchMatchStereo.allow_missing_files=1"]):
+            for sources in ("__auto__, 20", "__all__"):
+                with self.subTest(options=options, sources=sources):
+                    workspace = self.workspace()
+                    (workspace / "images/view02.png").unlink()
+                    (workspace / "stereo/patch-match.cfg").write_text(
+                        "".join(f"view0{i}.png\n{sources}\n" for i in (0, 1, 3))
+                    )
+                    result = self.run_tool(workspace, *FAST, *options)
+                    self.assert_exit(result, 0)
+                    self.assertIn("view02.png", result.stderr)
+                    self.assertIn("3 computed, 0 kept from an earlier run, 0 failed", result.stdout)
+                    self.assert_complete(workspace, ["view00.png", "view01.png", "view03.png"])
 
     def test_sixteen_bits_and_another_size_are_read(self):
         workspace = self.workspace()
