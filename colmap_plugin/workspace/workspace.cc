@@ -59,6 +59,21 @@ std::string WithoutDigits(std::string text) {
   return text;
 }
 
+// Images that were filtered out stay in the tracks of many scripts' models,
+// which COLMAP tolerates. If that is most of them, the files are of two models.
+void ReportLeftOut(const SparseModel& model, const LogSink& log) {
+  if (!log || model.num_left_out == 0) return;
+  const bool most = 2 * model.num_left_out > model.num_observations;
+  log(most ? LogLevel::kWarning : LogLevel::kInfo,
+      fmt::format(
+          "{} of {} observations of sparse points are left out: their "
+          "images (the first: id {}) are not in the images file{}",
+          model.num_left_out,
+          model.num_observations,
+          model.left_out_example,
+          most ? "; check that images and points3D are of one model" : ""));
+}
+
 }  // namespace
 
 Workspace::Workspace(const WorkspaceOptions& options, const LogSink& log)
@@ -68,6 +83,7 @@ Workspace::Workspace(const WorkspaceOptions& options, const LogSink& log)
   } else {
     CheckFolder();
     model_ = ReadSparseModel(options_.path / "sparse");
+    ReportLeftOut(model_, log);
   }
   CheckNames();
   MakeCameras(log);

@@ -200,6 +200,21 @@ TEST(Workspace, OneFaultOfManyCamerasIsOneWarning) {
   EXPECT_THAT(files.Warnings()[0], HasSubstr("image_undistorter"));
 }
 
+TEST(Workspace, TracksOfImagesThatWereFilteredOutAreOneNote) {
+  TestWorkspace files;
+  files.AddImage("a.jpg", {0, 0, 0});
+  files.AddPoint({0, 0, 5}, {0, 7});
+  files.AddPoint({0, 0, 5}, {0, 8});
+  files.Open();
+  EXPECT_THAT(files.Warnings(), IsEmpty());
+  EXPECT_THAT(files.Notes(),
+              ElementsAre(testing::AllOf(HasSubstr("2 of 4 observations"),
+                                         HasSubstr("id 17"))));
+  files.AddPoint({0, 0, 5}, {8});  // now most of them
+  files.Open();
+  EXPECT_THAT(files.Warnings(), ElementsAre(HasSubstr("one model")));
+}
+
 TEST(Workspace, AFolderThatIsNoWorkspaceIsNamed) {
   const ScratchFolder folder;
   WorkspaceOptions options;
