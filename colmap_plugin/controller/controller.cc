@@ -10,6 +10,7 @@
 #include "colmap_plugin/workspace/output_check.h"
 #include "colmap_plugin/workspace/run_lock.h"
 #include "colmap_plugin/workspace/run_record.h"
+#include "colmap_plugin/workspace/stamp.h"
 #include "src/base/error.h"
 #include "src/cpu/cpu_backend.h"
 #include "src/engine/memory_plan.h"
@@ -59,12 +60,16 @@ double WorkOf(const StagePlan& plan, int stage, const StereoProblem& problem) {
   return static_cast<double>(iterations) * camera.width * camera.height;
 }
 
-// Maps between stages are of no use once the result is complete.
-void RemoveInnerMaps(const Workspace& workspace, const StagePlan& plan) {
+// From now on a map is finished only if this run made it.
+void RemoveStamps(const Workspace& workspace,
+                  const std::vector<StereoProblem>& problems,
+                  const StagePlan& plan) {
   for (const Stage& stage : plan.stages()) {
-    if (stage.is_public) continue;
-    std::error_code ignored;
-    std::filesystem::remove_all(workspace.StatePath() / stage.name, ignored);
+    for (const StereoProblem& problem : problems) {
+      RemoveStamp(workspace.StatePath(),
+                  workspace.ImageName(problem.ref_image),
+                  stage.name);
+    }
   }
 }
 
@@ -97,12 +102,12 @@ RunSummary PatchMatchController::Run() {
   cpus.push_back(MakeCpuBackend(target, num_threads));
 
   log_(LogLevel::kInfo, "Reading workspace...");
-  const Workspace workspace(options_.workspace, log_);
+  Workspace workspace(options_.workspace, log_);
   const RunLock lock(workspace.StatePath());
   RemoveStaleTemporaries(workspace.StereoPath());
 
   log_(LogLevel::kInfo, "Reading configuration...");
-  const std::vector<StereoProblem> problems =
+  std::vector<StereoProblem> problems =
       ReadProblems(workspace, MakeProblemOptions(options_), log_);
   log_(LogLevel::kInfo,
        fmt::format("Configuration has {} problems...", problems.size()));
@@ -112,13 +117,8 @@ RunSummary PatchMatchController::Run() {
         LevelsOf(FindMethod(options_.hpm.method), workspace);
   }
   const Schedule schedule = MakeSchedule(MakeScheduleOptions(options_));
-  const StagePlan plan(workspace, problems, schedule, options_);
+  StagePlan plan(workspace, problems, schedule, options_);
   PrepareOutputs(workspace, problems, BytesToWrite(problems, plan), log_);
-  if (plan.ReplacesForeignMaps()) {
-    log_(LogLevel::kWarning,
-         "maps made with other options or by another program are computed "
-         "anew");
-  }
 
   const bool geometric = options_.patch_match.geom_consistency;
   std::vector<std::unique_ptr<Backend>> gpus =
@@ -144,8 +144,7 @@ RunSummary PatchMatchController::Run() {
                     PlanCacheBytes(CacheBytes(options_.patch_match.cache_size),
                                    needs.working,
                                    needs.inputs,
-                                   MemoryLimit()),
-                    log_);
+                                   MemoryLimit()));
   log_(LogLevel::kInfo,
        fmt::format("{}{}, method {}, about {} MB of memory",
                    backend_name,
@@ -171,13 +170,27 @@ RunSummary PatchMatchController::Run() {
       options_.hpm.device != "cuda",
       log_);
   RunStatistics statistics;
-  for (const StereoProblem& problem : problems) {
-    // What is wrong was said when the workspace was read.
-    if (!CanBeComputed(workspace, problem))
-      statistics.AddFailure(workspace.ImageName(problem.ref_image));
+  if (options_.hpm.overwrite) RemoveStamps(workspace, problems, plan);
+  for (bool is_done = false; !is_done;) {
+    for (const StereoProblem& problem : problems) {
+      // What is wrong was said when it was found.
+      if (!CanBeComputed(workspace, problem))
+        statistics.AddFailure(workspace.ImageName(problem.ref_image));
+    }
+    try {
+      RunStages(workspace, problems, plan, &inputs, &workers, &statistics);
+      is_done = true;
+    } catch (const UnreadableImage& error) {
+      // Planned anew without it, so that all maps are those of a run that knew
+      // it from the start; what is made already and does not need it stays.
+      log_(LogLevel::kWarning, error.what());
+      workspace.DropPicture(error.image());
+      problems = ReadProblems(workspace, MakeProblemOptions(options_), nullptr);
+      options_.hpm.overwrite = false;
+      plan.Update();
+    }
   }
-  RunStages(workspace, problems, plan, &inputs, &workers, &statistics);
-  if (!statistics.AnyFailed()) RemoveInnerMaps(workspace, plan);
+  RemoveInnerMaps(workspace);
 
   std::vector<std::string> names;
   for (const StereoProblem& problem : problems) {
@@ -250,10 +263,17 @@ void PatchMatchController::RunStages(const Workspace& workspace,
       try {
         const StageResult result = runner->Run(s, p, control);
         const std::lock_guard<std::mutex> lock(mutex);
+        // Not before: an image that cannot be decoded changes the plan.
+        if (!statistics->AnyComputed() && plan.ReplacesForeignMaps()) {
+          log_(LogLevel::kWarning,
+               "maps made with other options or by another program are "
+               "computed anew");
+        }
         statistics->Add(
             name, stage, plan.CameraOf(s, problems[p].ref_image), result);
       } catch (const Error& error) {
-        if (error.code() != ErrorCode::kBadInput) {
+        if (error.code() != ErrorCode::kBadInput ||
+            dynamic_cast<const UnreadableImage*>(&error) != nullptr) {
           const std::lock_guard<std::mutex> lock(mutex);
           --number;
           done_work -= counted;

@@ -92,12 +92,6 @@ ViewSet StageRunner::MakeViews(int stage, int problem) {
   const StageSpec& spec = plan_.stages()[stage].spec;
   views.ref = {
       plan_.CameraOf(stage, p.ref_image), inputs_->Image(p.ref_image), nullptr};
-  if (views.ref.image == nullptr) {
-    throw Error(ErrorCode::kBadInput,
-                workspace_.ImagePath(p.ref_image).string() +
-                    ": cannot be read, so there are no maps for it; undistort "
-                    "the images again");
-  }
   views.depth_min = kDepthMinSlack * p.depth_min;
   views.depth_max = kDepthMaxSlack * p.depth_max;
   views.random_key = RandomKey(options_.random_seed, name);
@@ -107,7 +101,6 @@ ViewSet StageRunner::MakeViews(int stage, int problem) {
   if (spec.passes.empty()) return views;  // nothing is matched
   for (const int src : p.src_images) {
     View view = {plan_.CameraOf(stage, src), inputs_->Image(src), nullptr};
-    if (view.image == nullptr) continue;
     if (spec.geometric) {
       if (plan_.HasCurrentMaps(stage - 1, src)) {
         view.inverse_depth = inputs_->InverseDepth(
@@ -131,12 +124,6 @@ ViewSet StageRunner::MakeViews(int stage, int problem) {
                      num_without_maps_,
                      views.srcs.size(),
                      plan_.stages()[stage - 1].name));
-  }
-  if (views.srcs.empty()) {
-    throw Error(ErrorCode::kBadInput,
-                workspace_.ImagePath(p.ref_image).string() +
-                    ": none of its source images can be read; undistort the "
-                    "images again");
   }
   return views;
 }

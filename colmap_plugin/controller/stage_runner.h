@@ -31,8 +31,7 @@ class StageRunner {
               Backend* backend,
               const LogSink& log);
 
-  // Throws Error(kBadInput) if the reference or all of its sources cannot be
-  // read.
+  // Throws UnreadableImage if the reference or a source cannot be decoded.
   StageResult Run(int stage, int problem, const RunControl& control);
 
  private:

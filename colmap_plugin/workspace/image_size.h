@@ -1,6 +1,6 @@
 // Width and height of an image file as stored (EXIF rotation ignored, as COLMAP
 // does), without decoding it where the header can be read here: JPEG, PNG, BMP,
-// TIFF. Other types are decoded by OpenCV. The file's first bytes decide, not
+// TIFF. All else is decoded by OpenCV. The file's first bytes decide, not
 // its extension.
 #pragma once
 

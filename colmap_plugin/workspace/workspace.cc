@@ -161,7 +161,7 @@ void Workspace::CheckNames() {
 }
 
 void Workspace::MakeCameras(const LogSink& log) {
-  ImageFault backslashes, missing, other_size, other_proportions;
+  ImageFault backslashes, missing, unreadable, other_size, other_proportions;
   std::map<std::string, ImageFault> bad_cameras;  // by reason
   std::string why_not;
   for (int i = 0; i < num_images(); ++i) {
@@ -192,8 +192,13 @@ void Workspace::MakeCameras(const LogSink& log) {
       backslashes.Add(QuotedName(image.name));
     const ImageSize camera_size = {static_cast<int>(sparse_camera.width),
                                    static_cast<int>(sparse_camera.height)};
-    if (!file.size || (file.size->width == camera_size.width &&
-                       file.size->height == camera_size.height)) {
+    if (!file.size) {
+      unreadable.Add(file.path.string());
+      has_picture_.back() = false;
+      continue;
+    }
+    if ((file.size->width == camera_size.width &&
+         file.size->height == camera_size.height)) {
       continue;
     }
     const std::string sizes = fmt::format("{} is {}x{}, its camera {}x{}",
@@ -222,6 +227,11 @@ void Workspace::MakeCameras(const LogSink& log) {
   std::vector<std::string> faults;
   if (missing.num() > 0)
     faults.push_back(missing.Line(num_images(), "without a file"));
+  if (unreadable.num() > 0) {
+    faults.push_back(
+        unreadable.Line(num_images(), "with a file that cannot be decoded") +
+        "; undistort the images again");
+  }
   if (other_proportions.num() > 0) {
     faults.push_back(
         other_proportions.Line(num_images(),
@@ -229,7 +239,9 @@ void Workspace::MakeCameras(const LogSink& log) {
         "; they are not used: undo a rotation after the reconstruction (by "
         "software or by its EXIF entry), or undistort the images again");
   }
-  if (num_usable > 0 && missing.num() + other_proportions.num() == num_usable) {
+  const int num_faults =
+      missing.num() + unreadable.num() + other_proportions.num();
+  if (num_usable > 0 && num_faults == num_usable) {
     throw Error(ErrorCode::kBadInput,
                 fmt::format("{}", fmt::join(faults, "; ")));
   }

@@ -49,6 +49,8 @@ class Workspace {
   // Whether there is an image file, and one that can be the camera's. Damage
   // that only decoding finds is not known here.
   bool has_picture(int index) const { return has_picture_[index]; }
+  // Decoding found damage.
+  void DropPicture(int index) { has_picture_[index] = false; }
 
   // At working size (max_image_size applied as COLMAP does), with the library's
   // pixel rule: integer (col, row) is the pixel centre (see working_camera.h).
