@@ -193,7 +193,7 @@ std::vector<OptionSpec> MakeTable() {
           "Levels of the prior hierarchy or image pyramid; -1 or 0: by method and image size"),
       Stereo(kExpert, "allow_missing_files", &P::allow_missing_files, Anything(),
              "Leave out source images whose files are missing",
-             "they are left out in any case, with a warning"),
+             "source images without a file are left out in any case, with a warning"),
       Stereo(kExpert, "window_step", &P::window_step, Between(1, 2), "Pixel stride in the window",
              "the stride of the window is part of the method"),
       Stereo(kExpert, "sigma_color", &P::sigma_color, Above(0),
