@@ -1,5 +1,7 @@
 #include "colmap_plugin/controller/controller.h"
 
+#include "colmap_plugin/controller/cut_maps.h"
+#include "colmap_plugin/controller/deep_images.h"
 #include "colmap_plugin/controller/devices.h"
 #include "colmap_plugin/controller/method_options.h"
 #include "colmap_plugin/controller/run_budget.h"
@@ -7,9 +9,11 @@
 #include "colmap_plugin/controller/stage_runner.h"
 #include "colmap_plugin/controller/worker_pool.h"
 #include "colmap_plugin/formats/atomic_file.h"
+#include "colmap_plugin/workspace/far_origin.h"
 #include "colmap_plugin/workspace/output_check.h"
 #include "colmap_plugin/workspace/run_lock.h"
 #include "colmap_plugin/workspace/run_record.h"
+#include "colmap_plugin/workspace/source_problems.h"
 #include "colmap_plugin/workspace/stamp.h"
 #include "src/base/error.h"
 #include "src/cpu/cpu_backend.h"
@@ -20,6 +24,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -50,6 +55,31 @@ int LevelsOf(const Method& method, const Workspace& workspace) {
   return AutomaticLevels(method, side);
 }
 
+// Problems of images that are only sources and have something to do.
+int CountNeededSources(const std::vector<StereoProblem>& problems,
+                       const StagePlan& plan) {
+  int count = 0;
+  for (int p = 0; p < static_cast<int>(problems.size()); ++p) {
+    if (problems[p].is_reference) continue;
+    bool needed = false;
+    for (int s = 0; s < static_cast<int>(plan.stages().size()); ++s)
+      needed |= plan.IsNeeded(s, p);
+    count += needed;
+  }
+  return count;
+}
+
+// Users choose it for speed, and wonder about the result.
+std::string WithoutGeometryNote(const Method& method) {
+  return fmt::format(
+      "--PatchMatchStereo.geom_consistency 0: depths are not made to agree "
+      "between images{}; expect a less dense result with many more gross "
+      "errors",
+      method.priors == Priors::kRegions
+          ? ", and surfaces with little texture get no priors"
+          : "");
+}
+
 // Work of a stage of an image: iterations times pixels.
 double WorkOf(const StagePlan& plan, int stage, const StereoProblem& problem) {
   const Camera camera = plan.CameraOf(stage, problem.ref_image);
@@ -60,17 +90,38 @@ double WorkOf(const StagePlan& plan, int stage, const StereoProblem& problem) {
   return static_cast<double>(iterations) * camera.width * camera.height;
 }
 
+// Behind the references, which come first.
+void AddSourceProblems(const Workspace& workspace,
+                       const ProblemOptions& options,
+                       std::vector<StereoProblem>* problems) {
+  for (StereoProblem& problem : SourceProblems(workspace, *problems, options))
+    problems->push_back(std::move(problem));
+}
+
 // From now on a map is finished only if this run made it.
-void RemoveStamps(const Workspace& workspace,
-                  const std::vector<StereoProblem>& problems,
-                  const StagePlan& plan) {
-  for (const Stage& stage : plan.stages()) {
+void ForgetMaps(const Workspace& workspace,
+                const std::vector<StereoProblem>& problems,
+                const StagePlan& plan) {
+  for (int s = 0; s < static_cast<int>(plan.stages().size()); ++s) {
     for (const StereoProblem& problem : problems) {
       RemoveStamp(workspace.StatePath(),
                   workspace.ImageName(problem.ref_image),
-                  stage.name);
+                  plan.NameOf(s, problem.ref_image));
     }
   }
+  // Those of images that become problems when the run is planned anew, too.
+  RemoveInnerMaps(workspace);
+}
+
+int CountFinalMaps(const Workspace& workspace, const StagePlan& plan) {
+  const std::string& stage = plan.stages().back().name;
+  int count = 0;
+  for (int image = 0; image < workspace.num_images(); ++image) {
+    std::error_code ignored;
+    count += std::filesystem::exists(
+        workspace.MapPath(image, MapKind::kDepth, stage), ignored);
+  }
+  return count;
 }
 
 }  // namespace
@@ -103,15 +154,22 @@ RunSummary PatchMatchController::Run() {
 
   log_(LogLevel::kInfo, "Reading workspace...");
   Workspace workspace(options_.workspace, log_);
-  const RunLock lock(workspace.StatePath());
+  CancelToken stop(&cancel_);
+  const RunLock lock(workspace.StatePath(), log_, &stop);
   RemoveStaleTemporaries(workspace.StereoPath());
+  workspace.StretchDeepImages(FindDeepRange(workspace, log_, stop));
 
   log_(LogLevel::kInfo, "Reading configuration...");
+  const ProblemOptions problem_options = MakeProblemOptions(options_);
   std::vector<StereoProblem> problems =
-      ReadProblems(workspace, MakeProblemOptions(options_), log_);
+      ReadProblems(workspace, problem_options, log_);
+  const size_t num_references = problems.size();
   log_(LogLevel::kInfo,
-       fmt::format("Configuration has {} problems...", problems.size()));
+       fmt::format("Configuration has {} problems...", num_references));
+  WarnOfFarOrigin(workspace, problems, log_);
 
+  const bool geometric = options_.patch_match.geom_consistency;
+  if (geometric) AddSourceProblems(workspace, problem_options, &problems);
   if (options_.hpm.num_levels <= 0) {
     options_.hpm.num_levels =
         LevelsOf(FindMethod(options_.hpm.method), workspace);
@@ -119,8 +177,19 @@ RunSummary PatchMatchController::Run() {
   const Schedule schedule = MakeSchedule(MakeScheduleOptions(options_));
   StagePlan plan(workspace, problems, schedule, options_);
   PrepareOutputs(workspace, problems, BytesToWrite(problems, plan), log_);
+  const int num_sources = CountNeededSources(problems, plan);
+  if (num_sources > 0) {
+    log_(
+        LogLevel::kInfo,
+        fmt::format("{} further images are estimated, because they are sources "
+                    "of these; their maps are not published",
+                    num_sources));
+  }
 
-  const bool geometric = options_.patch_match.geom_consistency;
+  if (!geometric) {
+    log_(LogLevel::kWarning,
+         WithoutGeometryNote(FindMethod(options_.hpm.method)));
+  }
   std::vector<std::unique_ptr<Backend>> gpus =
       OpenGpus(options_,
                LargestProblem(workspace, problems, geometric),
@@ -163,6 +232,7 @@ RunSummary PatchMatchController::Run() {
                                              schedule,
                                              options_,
                                              plan,
+                                             lock,
                                              &inputs,
                                              backend,
                                              log_);
@@ -170,37 +240,54 @@ RunSummary PatchMatchController::Run() {
       options_.hpm.device != "cuda",
       log_);
   RunStatistics statistics;
-  if (options_.hpm.overwrite) RemoveStamps(workspace, problems, plan);
+  if (options_.hpm.overwrite) {
+    lock.ThrowIfLost();
+    ForgetMaps(workspace, problems, plan);
+  }
   for (bool is_done = false; !is_done;) {
     for (const StereoProblem& problem : problems) {
       // What is wrong was said when it was found.
-      if (!CanBeComputed(workspace, problem))
+      if (problem.is_reference && !CanBeComputed(workspace, problem))
         statistics.AddFailure(workspace.ImageName(problem.ref_image));
     }
     try {
-      RunStages(workspace, problems, plan, &inputs, &workers, &statistics);
+      RunStages(
+          workspace, problems, plan, &inputs, &workers, stop, &statistics);
       is_done = true;
     } catch (const UnreadableImage& error) {
       // Planned anew without it, so that all maps are those of a run that knew
       // it from the start; what is made already and does not need it stays.
+      lock.ThrowIfLost();
       log_(LogLevel::kWarning, error.what());
       workspace.DropPicture(error.image());
-      problems = ReadProblems(workspace, MakeProblemOptions(options_), nullptr);
+      // The references are the same: those that cannot be computed stay as
+      // problems.
+      problems = ReadProblems(workspace, problem_options, nullptr);
+      if (geometric) AddSourceProblems(workspace, problem_options, &problems);
       options_.hpm.overwrite = false;
       plan.Update();
+    } catch (const Error& error) {
+      if (error.code() == ErrorCode::kInterrupted) lock.ThrowIfLost();
+      throw;
     }
   }
+  lock.ThrowIfLost();
   RemoveInnerMaps(workspace);
+  if (!statistics.AnyFailed()) CutInputMaps(workspace, problems, plan);
 
   std::vector<std::string> names;
-  for (const StereoProblem& problem : problems) {
-    names.push_back(workspace.ImageName(problem.ref_image));
+  for (size_t p = 0; p < num_references; ++p)
+    names.push_back(workspace.ImageName(problems[p].ref_image));
+  for (const std::string& line :
+       FilterWarnings(statistics.losses(), options_.patch_match)) {
+    log_(LogLevel::kWarning, line);
   }
-  const RunSummary summary = statistics.Summarize(
+  RunSummary summary = statistics.Summarize(
       names,
       backend_name,
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start)
           .count());
+  summary.num_fusable = CountFinalMaps(workspace, plan);
   if (statistics.AnyComputed() || statistics.AnyFailed()) {
     WriteRunRecord(workspace.StatePath(), statistics.Record(options_, summary));
   }
@@ -212,9 +299,13 @@ void PatchMatchController::RunStages(const Workspace& workspace,
                                      const StagePlan& plan,
                                      InputCache* inputs,
                                      WorkerPool* workers,
+                                     const CancelToken& cancel,
                                      RunStatistics* statistics) {
   const int num_stages = static_cast<int>(plan.stages().size());
   const int num_problems = static_cast<int>(problems.size());
+  // Images that are only sources fail by themselves: whoever reads their maps
+  // goes on without.
+  std::set<int> failed_sources;
   double total_work = 0, done_work = 0;
   for (int s = 0; s < num_stages; ++s) {
     for (int p = 0; p < num_problems; ++p) {
@@ -234,7 +325,7 @@ void PatchMatchController::RunStages(const Workspace& workspace,
     std::mutex mutex;
     int number = 0;
     workers->Run(needed, [&](StageRunner* runner, int p) {
-      cancel_.ThrowIfCancelled();
+      cancel.ThrowIfCancelled();
       const std::string& name = workspace.ImageName(problems[p].ref_image);
       const double work = WorkOf(plan, s, problems[p]);
       double counted = 0;  // of `work`, in done_work
@@ -249,28 +340,34 @@ void PatchMatchController::RunStages(const Workspace& workspace,
       {
         const std::lock_guard<std::mutex> lock(mutex);
         event.image_number = ++number;
-        if (statistics->HasFailed(name)) return;
+        if (statistics->HasFailed(name) || failed_sources.count(p) > 0) return;
       }
+      const bool is_reference = problems[p].is_reference;
+      const std::string stage_name = plan.NameOf(s, problems[p].ref_image);
       log_(LogLevel::kInfo,
            fmt::format("Processing view {} / {} for {} ({})",
                        event.image_number,
                        num_needed,
                        name,
-                       stage.name));
+                       stage_name));
       RunControl control;
-      control.cancel = &cancel_;
+      control.cancel = &cancel;
       control.progress = count;
       try {
         const StageResult result = runner->Run(s, p, control);
         const std::lock_guard<std::mutex> lock(mutex);
         // Not before: an image that cannot be decoded changes the plan.
-        if (!statistics->AnyComputed() && plan.ReplacesForeignMaps()) {
+        if (!statistics->AnyWork() && plan.ReplacesForeignMaps()) {
           log_(LogLevel::kWarning,
                "maps made with other options or by another program are "
                "computed anew");
         }
-        statistics->Add(
-            name, stage, plan.CameraOf(s, problems[p].ref_image), result);
+        statistics->Add(name,
+                        is_reference,
+                        stage,
+                        stage_name,
+                        plan.CameraOf(s, problems[p].ref_image),
+                        result);
       } catch (const Error& error) {
         if (error.code() != ErrorCode::kBadInput ||
             dynamic_cast<const UnreadableImage*>(&error) != nullptr) {
@@ -279,9 +376,14 @@ void PatchMatchController::RunStages(const Workspace& workspace,
           done_work -= counted;
           throw;
         }
-        log_(LogLevel::kError, error.what());
+        log_(is_reference ? LogLevel::kError : LogLevel::kWarning,
+             error.what());
         const std::lock_guard<std::mutex> lock(mutex);
-        statistics->AddFailure(name);
+        if (is_reference) {
+          statistics->AddFailure(name);
+        } else {
+          failed_sources.insert(p);
+        }
       }
       count(1);
     });

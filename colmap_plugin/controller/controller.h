@@ -3,6 +3,7 @@
 // publishes maps atomically, stops cleanly when cancelled.
 #pragma once
 
+#include "colmap_plugin/controller/filter_criterion.h"
 #include "colmap_plugin/controller/options.h"
 #include "src/base/cancel.h"
 #include "src/base/log.h"
@@ -35,6 +36,9 @@ struct RunSummary {
       failed;  // names of images that could not be computed
   double seconds = 0;
   double valid_pixel_share = 0;  // of the final maps written in this run, 0..1
+  FilterLosses filter_losses;    // the same, of what has no depth
+  // Images of the workspace with final maps: what fusion will find.
+  int num_fusable = 0;
   double ncc_evaluations_per_pixel = 0;
   uint64_t peak_memory_bytes = 0;
   std::string cpu_target;
@@ -54,8 +58,9 @@ class PatchMatchController {
                        ProgressSink progress,
                        const CancelToken& cancel);
 
-  // Throws Error(kBadInput, kLocked, kOutOfResources, kInterrupted ...). Images
-  // that fail one by one do not stop the others; they are listed in the
+  // Throws Error(kBadInput, kLocked, kOutOfResources, kInterrupted ...);
+  // kLocked also when another run has taken the workspace over meanwhile.
+  // Images that fail one by one do not stop the others; they are listed in the
   // summary.
   RunSummary Run();
 
@@ -65,6 +70,7 @@ class PatchMatchController {
                  const StagePlan& plan,
                  InputCache* inputs,
                  WorkerPool* workers,
+                 const CancelToken& cancel,
                  RunStatistics* statistics);
 
   ControllerOptions options_;

@@ -30,8 +30,10 @@ std::shared_ptr<const GrayImage> InputCache::Image(int image) {
   }
   try {
     const Camera& camera = workspace_.camera(image);
-    GrayImage full =
-        LoadGrayImage(workspace_.ImagePath(image), camera.width, camera.height);
+    GrayImage full = LoadGrayImage(workspace_.ImagePath(image),
+                                   camera.width,
+                                   camera.height,
+                                   workspace_.Decoding(image));
     auto loaded = std::make_shared<const GrayImage>(
         level == 0 ? std::move(full) : ShrinkImage(full, level));
     const std::lock_guard<std::mutex> lock(mutex_);

@@ -85,6 +85,20 @@ DepthAndNormal ToColmapMaps(const HypothesisMap& map,
   return out;
 }
 
+size_t DropOutside(const DepthRange& range, DepthAndNormal* maps) {
+  const size_t size = maps->depth.data.size();
+  size_t num_dropped = 0;
+  for (size_t i = 0; i < size; ++i) {
+    const float depth = maps->depth.data[i];
+    if (depth == 0 || (depth >= range.min && depth <= range.max)) continue;
+    ++num_dropped;
+    maps->depth.data[i] = 0;
+    for (size_t axis = 0; axis < 3; ++axis)
+      maps->normal.data[axis * size + i] = 0;
+  }
+  return num_dropped;
+}
+
 HypothesisMap FromColmapMaps(const Map& depth,
                              const Map& normal,
                              const Camera& camera) {

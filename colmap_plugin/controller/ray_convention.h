@@ -7,6 +7,7 @@
 #pragma once
 
 #include "colmap_plugin/formats/map_file.h"
+#include "colmap_plugin/workspace/depth_range.h"
 #include "src/image/hypothesis_map.h"
 
 #include <filesystem>
@@ -24,6 +25,9 @@ struct DepthAndNormal {
 DepthAndNormal ToColmapMaps(const HypothesisMap& map,
                             const Camera& camera,
                             const std::vector<bool>* keep = nullptr);
+
+// Depths outside `range` become 0, their normals, too. Returns how many.
+size_t DropOutside(const DepthRange& range, DepthAndNormal* maps);
 
 // Planes through the stored points; distance 0 where there is no depth. Both
 // maps must have the camera's size.

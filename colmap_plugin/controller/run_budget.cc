@@ -6,6 +6,23 @@
 
 namespace hpm {
 
+uint64_t DecodedBytes(const Workspace& workspace, int image) {
+  const std::optional<ImageSize>& size = workspace.file_size(image);
+  if (!size) return 0;
+  const ImageDecoding decoding = workspace.Decoding(image);
+  // Three samples (four of deep files, which may have alpha), and grey.
+  uint64_t bytes_per_pixel = 3 + 1;
+  if (size->depth != SampleDepth::k8) {
+    const uint64_t sample = size->depth == SampleDepth::k16 ? 2 : 4;
+    bytes_per_pixel = 4 * sample + sizeof(float);
+  }
+  const auto decoded = [&](int side) {
+    return static_cast<uint64_t>((side + decoding.reduction - 1) /
+                                 decoding.reduction);
+  };
+  return bytes_per_pixel * decoded(size->width) * decoded(size->height);
+}
+
 MemoryNeeds LargestNeeds(const Workspace& workspace,
                          const std::vector<StereoProblem>& problems,
                          const Backend& backend,
@@ -19,7 +36,9 @@ MemoryNeeds LargestNeeds(const Workspace& workspace,
     const Camera& ref = workspace.camera(problem.ref_image);
     const uint64_t ref_pixels = pixels_of(problem.ref_image);
     uint64_t inputs = ref_pixels;
+    uint64_t decoded = DecodedBytes(workspace, problem.ref_image);
     for (const int src : problem.src_images) {
+      decoded = std::max(decoded, DecodedBytes(workspace, src));
       inputs += pixels_of(src) * (geometric ? 1 + kInverseDepthBytes : 1);
     }
     const uint64_t maps_being_written = ref_pixels * 4 * sizeof(float);
@@ -27,7 +46,7 @@ MemoryNeeds LargestNeeds(const Workspace& workspace,
         backend.MemoryNeeded(ref.width,
                              ref.height,
                              static_cast<int>(problem.src_images.size())) +
-        maps_being_written;
+        maps_being_written + decoded;
     needs.working = std::max(needs.working, working);
     needs.inputs = std::max(needs.inputs, inputs);
   }

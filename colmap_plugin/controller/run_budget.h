@@ -12,10 +12,13 @@ namespace hpm {
 
 // Largest need over all problems, in bytes.
 struct MemoryNeeds {
-  uint64_t working =
-      0;  // per image in flight: of the backend and the maps being written
-  uint64_t inputs = 0;  // images and depth maps of one problem
+  uint64_t working = 0;  // per image in flight: of the backend, the maps being
+                         // written, and the decoder of one file
+  uint64_t inputs = 0;   // images and depth maps of one problem
 };
+
+// While the image's file is decoded, at the scale it is decoded at.
+uint64_t DecodedBytes(const Workspace& workspace, int image);
 
 MemoryNeeds LargestNeeds(const Workspace& workspace,
                          const std::vector<StereoProblem>& problems,

@@ -18,20 +18,24 @@ uint64_t PeakMemoryBytes() {
 }  // namespace
 
 void RunStatistics::Add(const std::string& image,
+                        bool is_reference,
                         const Stage& stage,
+                        const std::string& stage_name,
                         const Camera& camera,
                         const StageResult& result) {
   const double size = static_cast<double>(camera.width) * camera.height;
   evaluations_ += result.cost_evaluations_per_pixel * size;
-  if (computed_.insert(image).second) {
+  if (is_reference) computed_.insert(image);
+  if (worked_on_.insert(image).second) {
     pixels_ += size * static_cast<double>(1 << (2 * stage.spec.level));
   }
   if (stage.is_final) {
     valid_share_sum_ += result.valid_pixel_share;
     ++num_final_maps_;
+    losses_[image] = result.losses;
   }
   for (const auto& [phase, time] : result.seconds) seconds_[phase] += time;
-  images_[image][stage.name] = ToJson(result);
+  images_[image][stage_name] = ToJson(result);
 }
 
 RunSummary RunStatistics::Summarize(
@@ -48,6 +52,10 @@ RunSummary RunStatistics::Summarize(
   summary.seconds = seconds;
   if (num_final_maps_ > 0) {
     summary.valid_pixel_share = valid_share_sum_ / num_final_maps_;
+    for (const auto& [image, losses] : losses_) {
+      for (const auto& [criterion, share] : losses)
+        summary.filter_losses[criterion] += share / num_final_maps_;
+    }
   }
   if (pixels_ > 0) summary.ncc_evaluations_per_pixel = evaluations_ / pixels_;
   summary.peak_memory_bytes = PeakMemoryBytes();
@@ -78,8 +86,10 @@ nlohmann::json RunStatistics::Record(const ControllerOptions& options,
           {"seconds_per_phase", seconds_},
           {"ncc_evaluations_per_pixel", summary.ncc_evaluations_per_pixel},
           {"valid_pixel_share", summary.valid_pixel_share},
+          {"filter_losses", ToJson(summary.filter_losses)},
           {"peak_memory_bytes", summary.peak_memory_bytes},
           {"images_computed", summary.num_computed},
+          {"sources_computed", worked_on_.size() - computed_.size()},
           {"images_kept", summary.num_kept},
           {"images_failed", summary.failed},
           {"images", images_}};

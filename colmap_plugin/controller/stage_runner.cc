@@ -1,6 +1,7 @@
 #include "colmap_plugin/controller/stage_runner.h"
 
 #include "colmap_plugin/controller/method_options.h"
+#include "colmap_plugin/controller/needed_views.h"
 #include "colmap_plugin/controller/preview.h"
 #include "colmap_plugin/controller/ray_convention.h"
 #include "colmap_plugin/formats/consistency_graph.h"
@@ -19,8 +20,8 @@
 namespace hpm {
 namespace {
 
-// Hypotheses may leave the range of the sparse points by this much
-// (specification 2.4).
+// Hypotheses may leave the range that is searched by this much (specification
+// 2.4).
 constexpr float kDepthMinSlack = 0.6f;
 constexpr float kDepthMaxSlack = 1.2f;
 
@@ -37,6 +38,7 @@ uint64_t RandomKey(int seed, const std::string& image_name) {
 
 nlohmann::json ToJson(const StageResult& result) {
   return {{"valid_pixel_share", result.valid_pixel_share},
+          {"filter_losses", ToJson(result.losses)},
           {"cost_evaluations_per_pixel", result.cost_evaluations_per_pixel},
           {"seconds", result.seconds}};
 }
@@ -46,6 +48,7 @@ StageRunner::StageRunner(const Workspace& workspace,
                          const Schedule& schedule,
                          const ControllerOptions& options,
                          const StagePlan& plan,
+                         const RunLock& lock,
                          InputCache* inputs,
                          Backend* backend,
                          const LogSink& log)
@@ -54,6 +57,7 @@ StageRunner::StageRunner(const Workspace& workspace,
       schedule_(schedule),
       options_(options),
       plan_(plan),
+      lock_(lock),
       inputs_(inputs),
       backend_(backend),
       log_(log),
@@ -100,30 +104,22 @@ ViewSet StageRunner::MakeViews(int stage, int problem) {
   misses_maps_ = stage > 0 && !plan_.HasCompleteMaps(stage - 1, p.ref_image);
   if (spec.passes.empty()) return views;  // nothing is matched
   for (const int src : p.src_images) {
-    View view = {plan_.CameraOf(stage, src), inputs_->Image(src), nullptr};
+    View view = {plan_.CameraAround(stage, src, p.ref_image),
+                 inputs_->Image(src),
+                 nullptr};
     if (spec.geometric) {
       if (plan_.HasCurrentMaps(stage - 1, src)) {
         view.inverse_depth = inputs_->InverseDepth(
             src, view.camera, plan_.Files(stage - 1, src));
       }
       if (view.inverse_depth == nullptr) ++num_without_maps_;
-      if (plan_.IsReference(src) && (view.inverse_depth == nullptr ||
-                                     !plan_.HasCompleteMaps(stage - 1, src))) {
+      if (plan_.HasProblem(src) && (view.inverse_depth == nullptr ||
+                                    !plan_.HasCompleteMaps(stage - 1, src))) {
         misses_maps_ = true;
       }
     }
     views.srcs.push_back(std::move(view));
     src_images_.push_back(src);
-  }
-  if (num_without_maps_ > 0) {
-    log_(LogLevel::kWarning,
-         fmt::format("{}: {} of {} sources have no {} maps (no entry of their "
-                     "own in patch-match.cfg?) and take part without geometric "
-                     "consistency",
-                     name,
-                     num_without_maps_,
-                     views.srcs.size(),
-                     plan_.stages()[stage - 1].name));
   }
   return views;
 }
@@ -166,16 +162,19 @@ void StageRunner::Publish(int stage,
     const FilterParams params = MakeFilterParams(
         options_.patch_match,
         static_cast<int>(problems_[problem].src_images.size()));
-    // A subset of images may have no maps of its sources at all.
+    // Maps of all sources may have failed.
     const bool geometric =
         info.spec.geometric &&
         num_without_maps_ < static_cast<int>(views.srcs.size());
     consistent = backend_->ConsistentViews(map, params, geometric, control);
     keep.resize(consistent.size());
+    const NeededViews needed(views, map, params);
     for (size_t i = 0; i < keep.size(); ++i) {
-      keep[i] = __builtin_popcount(consistent[i]) >= params.min_num_consistent;
+      keep[i] = __builtin_popcount(consistent[i]) >= needed.At(i);
     }
-    if (!plan_.WritesGraph(stage)) consistent = std::vector<uint32_t>();
+    result->losses =
+        CountFilterLosses(views, map, consistent, keep, params, geometric);
+    if (!plan_.WritesGraph(stage, image)) consistent = std::vector<uint32_t>();
   }
   if (!info.spec.passes.empty()) {
     result->cost_evaluations_per_pixel =
@@ -186,25 +185,37 @@ void StageRunner::Publish(int stage,
   backend_->ForgetViews();
 
   PhaseTimer timer(&result->seconds, "write");
-  const DepthAndNormal maps =
+  DepthAndNormal maps =
       ToColmapMaps(map, views.ref.camera, filter ? &keep : nullptr);
+  if (info.is_final) {
+    const size_t num_dropped = DropOutside(problems_[problem].published, &maps);
+    if (num_dropped > 0) {
+      result->losses[FilterCriterion::kRange] =
+          static_cast<double>(num_dropped) /
+          static_cast<double>(maps.depth.data.size());
+    }
+  }
   result->valid_pixel_share =
       1.0 - static_cast<double>(std::count(
                 maps.depth.data.begin(), maps.depth.data.end(), 0.0f)) /
                 static_cast<double>(maps.depth.data.size());
   const std::string& name = workspace_.ImageName(image);
-  if (info.is_public) {
+  const bool is_public = plan_.IsPublic(stage, image);
+  const std::string stage_name = plan_.NameOf(stage, image);
+  if (is_public) {
     log_(LogLevel::kInfo, "Writing " + info.name + " output for " + name);
   }
   const StageFiles files = plan_.Files(stage, image);
-  RemoveStamp(workspace_.StatePath(), name, info.name);
-  if (info.is_public) {
+  lock_.ThrowIfLost();
+  RemoveStamp(workspace_.StatePath(), name, stage_name);
+  if (is_public) {
     std::error_code ignored;
     std::filesystem::remove(files.graph, ignored);
   }
   WriteMap(files.normal, maps.normal);
+  lock_.ThrowIfLost();
   WriteMap(files.depth, maps.depth);
-  if (plan_.WritesGraph(stage)) {
+  if (plan_.WritesGraph(stage, image)) {
     ConsistencyGraph graph = {map.width, map.height, {}};
     for (size_t i = 0; i < consistent.size(); ++i) {
       if (consistent[i] == 0 || maps.depth.data[i] == 0) continue;
@@ -220,9 +231,10 @@ void StageRunner::Publish(int stage,
   if (options_.hpm.previews && info.is_final) {
     WritePreviews(workspace_.StereoPath() / "previews", name, maps);
   }
+  lock_.ThrowIfLost();
   WriteStamp(workspace_.StatePath(),
              name,
-             info.name,
+             stage_name,
              misses_maps_ ? plan_.IncompleteFingerprintOf(stage, problem)
                           : plan_.FingerprintOf(stage, problem),
              ToJson(*result));

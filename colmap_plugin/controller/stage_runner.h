@@ -2,8 +2,10 @@
 // publishes normal map, depth map, graph and stamp in this order.
 #pragma once
 
+#include "colmap_plugin/controller/filter_losses.h"
 #include "colmap_plugin/controller/input_cache.h"
 #include "colmap_plugin/controller/stages.h"
+#include "colmap_plugin/workspace/run_lock.h"
 #include "src/engine/backend.h"
 #include "src/engine/estimator.h"
 
@@ -14,7 +16,8 @@ namespace hpm {
 struct StageResult {
   double valid_pixel_share = 0;
   double cost_evaluations_per_pixel = 0;
-  PhaseTimes seconds;  // wall, per phase
+  FilterLosses losses;  // of a final stage
+  PhaseTimes seconds;   // wall, per phase
 };
 
 nlohmann::json ToJson(const StageResult& result);
@@ -27,11 +30,13 @@ class StageRunner {
               const Schedule& schedule,
               const ControllerOptions& options,
               const StagePlan& plan,
+              const RunLock& lock,
               InputCache* inputs,
               Backend* backend,
               const LogSink& log);
 
-  // Throws UnreadableImage if the reference or a source cannot be decoded.
+  // Throws UnreadableImage if the reference or a source cannot be decoded,
+  // Error(kLocked) instead of publishing when the lock is lost.
   StageResult Run(int stage, int problem, const RunControl& control);
 
  private:
@@ -51,12 +56,13 @@ class StageRunner {
   const Schedule& schedule_;
   const ControllerOptions& options_;
   const StagePlan& plan_;
+  const RunLock& lock_;
   InputCache* inputs_;
   Backend* backend_;
   const LogSink& log_;
   const MethodParams params_;
-  // Of the current problem: sources without depth maps, and whether one that is
-  // a reference itself lacks them, or has them from incomplete inputs.
+  // Of the current problem: sources without depth maps, and whether one that
+  // should have them lacks them, or has them from incomplete inputs.
   int num_without_maps_ = 0;
   bool misses_maps_ = false;
   // Image index of each source view of the current problem.

@@ -14,10 +14,11 @@ namespace hpm {
 namespace {
 
 // Raise when the same options give other maps.
-constexpr int kAlgorithmVersion = 6;
+constexpr int kAlgorithmVersion = 7;
 
 constexpr const char* kLevelPrefix = "level_";
 constexpr const char* kGeometricPrefix = "geometric_";
+constexpr const char* kSourcePrefix = "source_";
 
 bool StartsWith(const std::string& text, const char* prefix) {
   return text.rfind(prefix, 0) == 0;
@@ -48,8 +49,12 @@ std::vector<Stage> MakeStages(const Schedule& schedule) {
   return stages;
 }
 
-void AddImage(const Workspace& workspace, int image, Fingerprint* hash) {
-  const Camera& camera = workspace.camera(image);
+// The pose as the reference sees it.
+void AddImage(const Workspace& workspace,
+              int image,
+              int ref_image,
+              Fingerprint* hash) {
+  const Camera camera = workspace.CameraAround(image, ref_image);
   std::error_code error;
   const auto num_bytes =
       std::filesystem::file_size(workspace.ImagePath(image), error);
@@ -60,6 +65,14 @@ void AddImage(const Workspace& workspace, int image, Fingerprint* hash) {
     hash->AddDouble(v);
   for (const float v : camera.R.m) hash->AddDouble(v);
   for (const float v : {camera.t.x, camera.t.y, camera.t.z}) hash->AddDouble(v);
+  const ImageDecoding decoding = workspace.Decoding(image);
+  if (decoding.stretch) {
+    hash->AddString("stretched")
+        .AddDouble(decoding.stretch->low)
+        .AddDouble(decoding.stretch->high);
+  }
+  if (decoding.reduction > 1)
+    hash->AddString("decoded at").AddInt(decoding.reduction);
 }
 
 void AddMethod(const MethodParams& params, Fingerprint* hash) {
@@ -72,6 +85,7 @@ void AddMethod(const MethodParams& params, Fingerprint* hash) {
                         params.depth_perturbation,
                         params.normal_perturbation,
                         params.same_plane_bound,
+                        params.worst_cost,
                         params.prior_gamma,
                         params.prior_beta,
                         params.prior_depth_share,
@@ -98,8 +112,9 @@ std::string OwnFingerprint(const Workspace& workspace,
   hash.AddInt(kAlgorithmVersion)
       .AddString(stage.name)
       .AddInt(options.random_seed);
-  AddImage(workspace, problem.ref_image, &hash);
-  for (const int src : problem.src_images) AddImage(workspace, src, &hash);
+  AddImage(workspace, problem.ref_image, problem.ref_image, &hash);
+  for (const int src : problem.src_images)
+    AddImage(workspace, src, problem.ref_image, &hash);
   hash.AddDouble(problem.depth_min).AddDouble(problem.depth_max);
   const MethodParams params = MakeMethodParams(options);
   AddMethod(params, &hash);
@@ -119,11 +134,18 @@ std::string OwnFingerprint(const Workspace& workspace,
     hash.AddDouble(params.geom_weight).AddDouble(params.geom_max_error);
     hash.AddDouble(params.region_max_gradient);
   }
-  if (stage.is_final) AddFilter(options.patch_match, &hash);
+  if (stage.is_final) {
+    AddFilter(options.patch_match, &hash);
+    hash.AddDouble(problem.published.min).AddDouble(problem.published.max);
+  }
   return hash.Hex();
 }
 
 }  // namespace
+
+std::string NameForSources(const Stage& stage) {
+  return kSourcePrefix + stage.name;
+}
 
 StagePlan::StagePlan(const Workspace& workspace,
                      const std::vector<StereoProblem>& problems,
@@ -157,8 +179,7 @@ void StagePlan::Update() {
         for (const int src : problems[p].src_images) {
           if (!stages_[s].spec.geometric) break;
           const int q = problem_of_image_[src];
-          hash.AddString(q < 0 ? StampOf(s - 1, src).value_or("")
-                               : fingerprints_[s - 1][q]);
+          hash.AddString(q < 0 ? "" : fingerprints_[s - 1][q]);
         }
       }
       fingerprints_[s].push_back(hash.Hex());
@@ -169,10 +190,9 @@ void StagePlan::Update() {
   // passes only if the pass after them still has to read them.
   needed_.assign(num_stages, std::vector<bool>(num_problems, false));
   for (int s = num_stages - 1; s >= 0; --s) {
-    const bool visible = stages_[s].is_public;
-    std::vector<bool> wanted(num_problems, visible);
-    for (int q = 0; q < num_problems && !visible; ++q) {
-      if (!needed_[s + 1][q]) continue;
+    std::vector<bool> wanted(num_problems);  // by the stage after
+    for (int q = 0; q < num_problems; ++q) {
+      if (s + 1 == num_stages || !needed_[s + 1][q]) continue;
       wanted[q] = true;
       if (!stages_[s + 1].spec.geometric) continue;
       for (const int src : problems[q].src_images) {
@@ -180,8 +200,11 @@ void StagePlan::Update() {
       }
     }
     for (int p = 0; p < num_problems; ++p) {
-      needed_[s][p] = wanted[p] && CanBeComputed(workspace_, problems[p]) &&
-                      (options_.hpm.overwrite || !IsFinished(s, p));
+      if (!CanBeComputed(workspace_, problems[p]) ||
+          (!wanted[p] && !IsPublic(s, problems[p].ref_image))) {
+        continue;
+      }
+      needed_[s][p] = options_.hpm.overwrite || !IsFinished(s, p, !wanted[p]);
     }
   }
   replaces_foreign_maps_ = replaces_foreign_maps_ && found_foreign_maps_;
@@ -192,27 +215,45 @@ int StagePlan::CountNeeded(int s) const {
       std::count(needed_[s].begin(), needed_[s].end(), true));
 }
 
+std::string StagePlan::CutFingerprintOf(int s, int p) const {
+  Fingerprint hash;
+  hash.AddString(fingerprints_[s][p])
+      .AddDouble(problems_[p].published.min)
+      .AddDouble(problems_[p].published.max);
+  return hash.Hex() + "-cut";
+}
+
 StageFiles StagePlan::Files(int s, int image) const {
-  const Stage& stage = stages_[s];
-  if (stage.is_public) {
-    return {workspace_.MapPath(image, MapKind::kDepth, stage.name),
-            workspace_.MapPath(image, MapKind::kNormal, stage.name),
-            workspace_.MapPath(image, MapKind::kConsistencyGraph, stage.name)};
+  const std::string stage = NameOf(s, image);
+  if (IsPublic(s, image)) {
+    return {workspace_.MapPath(image, MapKind::kDepth, stage),
+            workspace_.MapPath(image, MapKind::kNormal, stage),
+            workspace_.MapPath(image, MapKind::kConsistencyGraph, stage)};
   }
-  const std::filesystem::path folder = workspace_.StatePath() / stage.name;
+  const std::filesystem::path folder = workspace_.StatePath() / stage;
   const std::string& name = workspace_.ImageName(image);
   return {folder / (name + ".depth.bin"), folder / (name + ".normal.bin"), {}};
 }
 
 std::optional<std::string> StagePlan::StampOf(int s, int image) const {
   return ReadStampFingerprint(
-      workspace_.StatePath(), workspace_.ImageName(image), stages_[s].name);
+      workspace_.StatePath(), workspace_.ImageName(image), NameOf(s, image));
+}
+
+std::string StagePlan::NameOf(int s, int image) const {
+  const int p = problem_of_image_[image];
+  return p >= 0 && !problems_[p].is_reference ? NameForSources(stages_[s])
+                                              : stages_[s].name;
+}
+
+bool StagePlan::IsPublic(int s, int image) const {
+  const int p = problem_of_image_[image];
+  return stages_[s].is_public && (p < 0 || problems_[p].is_reference);
 }
 
 bool StagePlan::HasCompleteMaps(int s, int image) const {
-  const std::optional<std::string> stamp = StampOf(s, image);
   const int p = problem_of_image_[image];
-  return stamp && (p < 0 || *stamp == fingerprints_[s][p]);
+  return p >= 0 && StampOf(s, image) == fingerprints_[s][p];
 }
 
 bool StagePlan::HasCurrentMaps(int s, int image) const {
@@ -221,11 +262,11 @@ bool StagePlan::HasCurrentMaps(int s, int image) const {
          (p >= 0 && StampOf(s, image) == IncompleteFingerprintOf(s, p));
 }
 
-bool StagePlan::WritesGraph(int s) const {
-  return options_.patch_match.write_consistency_graph && stages_[s].is_public;
+bool StagePlan::WritesGraph(int s, int image) const {
+  return options_.patch_match.write_consistency_graph && IsPublic(s, image);
 }
 
-bool StagePlan::IsFinished(int s, int p) {
+bool StagePlan::IsFinished(int s, int p, bool may_be_cut) {
   const int image = problems_[p].ref_image;
   const StageFiles files = Files(s, image);
   std::error_code error;
@@ -234,8 +275,9 @@ bool StagePlan::IsFinished(int s, int p) {
     return false;
   }
   if (!HasCompleteMaps(s, image)) {
-    found_foreign_maps_ = true;
-    return false;
+    const bool is_cut = StampOf(s, image) == CutFingerprintOf(s, p);
+    if (!is_cut) found_foreign_maps_ = true;
+    if (!is_cut || !may_be_cut) return false;
   }
   const Camera camera = CameraOf(s, image);
   const auto fits = [&](const MapHeader& header, int channels) {
@@ -243,7 +285,7 @@ bool StagePlan::IsFinished(int s, int p) {
            header.channels == channels;
   };
   try {
-    if (WritesGraph(s)) {
+    if (WritesGraph(s, image)) {
       const ConsistencyGraph graph = ReadConsistencyGraph(files.graph);
       if (graph.width != camera.width || graph.height != camera.height) {
         return false;
@@ -264,8 +306,9 @@ void RemoveInnerMaps(const Workspace& workspace) {
        !error && it != end;
        it.increment(error)) {
     const std::string name = it->path().filename().string();
-    if (StartsWith(name, kLevelPrefix) || StartsWith(name, kGeometricPrefix))
-      folders.push_back(it->path());
+    for (const char* prefix : {kLevelPrefix, kGeometricPrefix, kSourcePrefix}) {
+      if (StartsWith(name, prefix)) folders.push_back(it->path());
+    }
   }
   for (const std::filesystem::path& folder : folders)
     std::filesystem::remove_all(folder, error);

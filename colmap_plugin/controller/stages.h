@@ -19,9 +19,14 @@ struct Stage {
   // "level_2_photometric" and so on.
   std::string name;
   StageSpec spec;
-  bool is_public = false;  // its maps lie where COLMAP looks for them
-  bool is_final = false;   // filtered, if asked for; its maps are the result
+  // Its maps of references lie where COLMAP looks for them.
+  bool is_public = false;
+  bool is_final = false;  // filtered, if asked for; its maps are the result
 };
+
+// Under which the maps of problems that are only sources are kept: an image may
+// be a reference in the next run.
+std::string NameForSources(const Stage& stage);
 
 struct StageFiles {
   std::filesystem::path depth, normal, graph;
@@ -57,28 +62,42 @@ class StagePlan {
   std::string IncompleteFingerprintOf(int s, int p) const {
     return fingerprints_[s][p] + "-incomplete";
   }
+  // What the stamp of a public stage before the last holds once its maps were
+  // cut to a depth range given by hand (cut_maps.h): finished for users, of no
+  // use to the stage after.
+  std::string CutFingerprintOf(int s, int p) const;
   StageFiles Files(int s, int image) const;
-  // Whether the image's maps of stage s are those of this plan; for an image
-  // that is no reference here, whether another run of ours finished them.
+  // The stage's name, in files and stamps, for this image.
+  std::string NameOf(int s, int image) const;
+  // Whether the maps of stage s of the image, if it has a problem, are for
+  // others than this program.
+  bool IsPublic(int s, int image) const;
+  // Whether the image's maps of stage s are those of this plan.
   bool HasCompleteMaps(int s, int image) const;
   // The same, or made without the maps of some source that failed.
   bool HasCurrentMaps(int s, int image) const;
-  bool IsReference(int image) const { return problem_of_image_[image] >= 0; }
-  // The image's camera at the scale of the stage.
+  bool HasProblem(int image) const { return problem_of_image_[image] >= 0; }
+  // The image's camera at the scale of the stage, its own centre the origin.
   Camera CameraOf(int s, int image) const {
     return LevelCamera(workspace_.camera(image), stages_[s].spec.level);
   }
-  bool WritesGraph(int s) const;
+  // The same around the centre of another one.
+  Camera CameraAround(int s, int image, int origin) const {
+    return LevelCamera(workspace_.CameraAround(image, origin),
+                       stages_[s].spec.level);
+  }
+  bool WritesGraph(int s, int image) const;
 
  private:
-  bool IsFinished(int s, int p);
+  bool IsFinished(int s, int p, bool may_be_cut);
   std::optional<std::string> StampOf(int s, int image) const;
 
   const Workspace& workspace_;
   const std::vector<StereoProblem>& problems_;
   const ControllerOptions& options_;
   std::vector<Stage> stages_;
-  std::vector<int> problem_of_image_;  // -1: the image is no reference
+  // -1: the image is neither a reference nor a source of one.
+  std::vector<int> problem_of_image_;
   std::vector<std::vector<std::string>> fingerprints_;  // [stage][problem]
   std::vector<std::vector<bool>> needed_;               // [stage][problem]
   bool found_foreign_maps_ = false;                     // by the newest plan

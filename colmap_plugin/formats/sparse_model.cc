@@ -1,5 +1,6 @@
 #include "colmap_plugin/formats/sparse_model.h"
 
+#include "colmap_plugin/formats/frame_poses.h"
 #include "colmap_plugin/formats/sparse_model_io.h"
 #include "src/base/error.h"
 
@@ -51,7 +52,9 @@ bool IsComplete(const fs::path& folder, const Encoding& encoding) {
   return true;
 }
 
-SparseModel Read(const fs::path& folder, const Encoding& encoding) {
+SparseModel Read(const fs::path& folder,
+                 const Encoding& encoding,
+                 const LogSink& log) {
   SparseModelBuilder builder;
   encoding.read_cameras(FilePath(folder, "cameras", encoding), &builder);
   encoding.read_images(FilePath(folder, "images", encoding), &builder);
@@ -67,6 +70,11 @@ SparseModel Read(const fs::path& folder, const Encoding& encoding) {
   if (Exists(rigs)) {
     encoding.read_rigs(rigs, &builder);
     encoding.read_frames(frames, &builder);
+    if (log && !builder.replaced_poses().empty()) {
+      const std::string stale = DescribeStalePoses(
+          builder.model().images, builder.replaced_poses(), encoding.extension);
+      if (!stale.empty()) log(LogLevel::kWarning, stale);
+    }
   }
   encoding.read_points(FilePath(folder, "points3D", encoding), &builder);
   return builder.Release();
@@ -74,9 +82,9 @@ SparseModel Read(const fs::path& folder, const Encoding& encoding) {
 
 }  // namespace
 
-SparseModel ReadSparseModel(const fs::path& folder) {
+SparseModel ReadSparseModel(const fs::path& folder, const LogSink& log) {
   for (const Encoding* encoding : {&kBinary, &kText}) {
-    if (IsComplete(folder, *encoding)) return Read(folder, *encoding);
+    if (IsComplete(folder, *encoding)) return Read(folder, *encoding, log);
   }
   // The mapper numbers its models; a dense workspace has one, without number.
   const fs::path numbered = folder / "0";

@@ -5,6 +5,8 @@
 // Not checked here: image names (image_name.h), repeated names, focal lengths.
 #pragma once
 
+#include "src/base/log.h"
+
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -56,11 +58,13 @@ struct SparseModel {
   uint32_t left_out_example = 0;  // an image id, if there are any
 };
 
-// Reads the binary files if all three exist, else the text files. Poses come
-// from images.*; rigs.* and frames.* only fix the order of the images. Text
+// Reads the binary files if all three exist, else the text files. Where rigs.*
+// and frames.* exist they give the order and the poses of the images, as in
+// COLMAP; a warning in `log` says if images.* holds other poses. Text
 // names may hold blanks: the whole rest of the line is the name (COLMAP cuts it
 // at the first blank). A last image without its line of points is kept, too.
 // Throws Error(kBadInput) naming the file at fault.
-SparseModel ReadSparseModel(const std::filesystem::path& folder);
+SparseModel ReadSparseModel(const std::filesystem::path& folder,
+                            const LogSink& log = nullptr);
 
 }  // namespace hpm

@@ -29,6 +29,13 @@ void ReadRecords(ByteReader* reader,
   reader->CheckAtEnd();
 }
 
+PoseRecord ReadPose(ByteReader* reader) {
+  PoseRecord pose;
+  for (double& value : pose.rotation) value = reader->Read<double>();
+  for (double& value : pose.translation) value = reader->Read<double>();
+  return pose;
+}
+
 SensorId ReadSensorId(ByteReader* reader) {
   SensorId sensor;
   sensor.type = reader->Read<int32_t>();
@@ -63,26 +70,22 @@ void ReadCamerasBinary(const std::filesystem::path& path,
 void ReadImagesBinary(const std::filesystem::path& path,
                       SparseModelBuilder* builder) {
   ByteReader file(path);
-  ReadRecords(
-      &file,
-      4 + kPoseBytes + 4 + 1 + 8,
-      "images",
-      [builder](ByteReader* reader) {
-        const auto id = reader->Read<uint32_t>();
-        double rotation[4];
-        double translation[3];
-        for (double& value : rotation) value = reader->Read<double>();
-        for (double& value : translation) value = reader->Read<double>();
-        const auto camera_id = reader->Read<uint32_t>();
-        std::string name = reader->ReadName();
-        constexpr uint64_t kPoint2DBytes =
-            2 * sizeof(double) + sizeof(uint64_t);
-        const auto num_points2D = reader->Read<uint64_t>();
-        reader->CheckCount(num_points2D, kPoint2DBytes, "image points");
-        reader->Skip(num_points2D * kPoint2DBytes);
-        builder->AddImage(
-            *reader, id, rotation, translation, camera_id, std::move(name));
-      });
+  ReadRecords(&file,
+              4 + kPoseBytes + 4 + 1 + 8,
+              "images",
+              [builder](ByteReader* reader) {
+                const auto id = reader->Read<uint32_t>();
+                const PoseRecord cam_from_world = ReadPose(reader);
+                const auto camera_id = reader->Read<uint32_t>();
+                std::string name = reader->ReadName();
+                constexpr uint64_t kPoint2DBytes =
+                    2 * sizeof(double) + sizeof(uint64_t);
+                const auto num_points2D = reader->Read<uint64_t>();
+                reader->CheckCount(num_points2D, kPoint2DBytes, "image points");
+                reader->Skip(num_points2D * kPoint2DBytes);
+                builder->AddImage(
+                    *reader, id, cam_from_world, camera_id, std::move(name));
+              });
 }
 
 void ReadRigsBinary(const std::filesystem::path& path,
@@ -92,13 +95,18 @@ void ReadRigsBinary(const std::filesystem::path& path,
     const auto id = reader->Read<uint32_t>();
     const auto num_sensors = reader->Read<uint32_t>();
     reader->CheckCount(num_sensors, 8, "sensors");
-    std::set<SensorId> sensors;
+    std::vector<RigSensor> sensors;
     for (uint32_t i = 0; i < num_sensors; ++i) {
-      sensors.insert(ReadSensorId(reader));
-      // The first one is the reference sensor: it has no pose in the rig.
-      if (i > 0 && reader->Read<uint8_t>() != 0) reader->Skip(kPoseBytes);
+      RigSensor sensor;
+      sensor.id = ReadSensorId(reader);
+      if (i == 0) {  // the reference sensor: the file holds no pose
+        sensor.sensor_from_rig = PoseRecord();
+      } else if (reader->Read<uint8_t>() != 0) {
+        sensor.sensor_from_rig = ReadPose(reader);
+      }
+      sensors.push_back(sensor);
     }
-    builder->AddRig(*reader, id, std::move(sensors));
+    builder->AddRig(*reader, id, sensors);
   });
 }
 
@@ -109,7 +117,7 @@ void ReadFramesBinary(const std::filesystem::path& path,
       &file, 8 + kPoseBytes + 4, "frames", [builder](ByteReader* reader) {
         const auto id = reader->Read<uint32_t>();
         const auto rig_id = reader->Read<uint32_t>();
-        reader->Skip(kPoseBytes);
+        const PoseRecord rig_from_world = ReadPose(reader);
         const auto num_data = reader->Read<uint32_t>();
         reader->CheckCount(num_data, 16, "data ids");
         std::set<FrameData> data;
@@ -117,7 +125,7 @@ void ReadFramesBinary(const std::filesystem::path& path,
           const SensorId sensor = ReadSensorId(reader);
           data.insert({sensor, reader->Read<uint64_t>()});
         }
-        builder->AddFrame(*reader, id, rig_id, data);
+        builder->AddFrame(*reader, id, rig_id, rig_from_world, data);
       });
   builder->ApplyFrames(file);
 }

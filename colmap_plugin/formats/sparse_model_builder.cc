@@ -1,29 +1,11 @@
 #include "colmap_plugin/formats/sparse_model_builder.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include <fmt/format.h>
 
 namespace hpm {
-namespace {
-
-// Scaled by the largest part first: squares of finite values may overflow or
-// vanish.
-Eigen::Quaterniond Normalized(const double wxyz[4]) {
-  Eigen::Vector4d q(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
-  const double scale = q.cwiseAbs().maxCoeff();
-  if (!q.allFinite() || scale == 0) {
-    q.setConstant(std::numeric_limits<double>::quiet_NaN());
-  } else {
-    q /= scale;
-    q /= q.norm();
-  }
-  return Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
-}
-
-}  // namespace
 
 void SparseModelBuilder::AddCamera(const InputCursor& cursor,
                                    uint32_t id,
@@ -42,8 +24,7 @@ void SparseModelBuilder::AddCamera(const InputCursor& cursor,
 
 void SparseModelBuilder::AddImage(const InputCursor& cursor,
                                   uint32_t id,
-                                  const double rotation[4],
-                                  const double translation[3],
+                                  const PoseRecord& cam_from_world,
                                   uint32_t camera_id,
                                   std::string name) {
   if (model_.cameras.count(camera_id) == 0) {
@@ -58,31 +39,40 @@ void SparseModelBuilder::AddImage(const InputCursor& cursor,
   image.id = id;
   image.name = std::move(name);
   image.camera_id = camera_id;
-  image.cam_from_world_rotation = Normalized(rotation);
-  image.cam_from_world_translation =
-      Eigen::Vector3d(translation[0], translation[1], translation[2]);
+  const RigidPose pose = MakePose(cam_from_world);
+  image.cam_from_world_rotation = pose.rotation;
+  image.cam_from_world_translation = pose.translation;
   model_.images.push_back(std::move(image));
 }
 
 void SparseModelBuilder::AddRig(const InputCursor& cursor,
                                 uint32_t id,
-                                std::set<SensorId> sensors) {
-  if (!rigs_.emplace(id, std::move(sensors)).second) {
-    cursor.Fail(fmt::format("rig id {} occurs twice", id));
+                                const std::vector<RigSensor>& sensors) {
+  const auto [rig, is_new] = rigs_.try_emplace(id);
+  if (!is_new) cursor.Fail(fmt::format("rig id {} occurs twice", id));
+  for (const RigSensor& sensor : sensors) {
+    std::optional<RigidPose> pose;
+    if (sensor.sensor_from_rig) pose = MakePose(*sensor.sensor_from_rig);
+    if (!rig->second.emplace(sensor.id, pose).second) {
+      cursor.Fail(fmt::format("rig {} has sensor {} twice", id, sensor.id.id));
+    }
   }
 }
 
 void SparseModelBuilder::AddFrame(const InputCursor& cursor,
                                   uint32_t id,
                                   uint32_t rig_id,
+                                  const PoseRecord& rig_from_world,
                                   const std::set<FrameData>& data) {
   if (!frame_ids_.insert(id).second)
     cursor.Fail(fmt::format("frame id {} occurs twice", id));
   const auto rig = rigs_.find(rig_id);
   if (rig == rigs_.end())
     cursor.Fail(fmt::format("frame {} has the unknown rig {}", id, rig_id));
+  const RigidPose frame_pose = MakePose(rig_from_world);
   for (const FrameData& item : data) {
-    if (rig->second.count(item.sensor) == 0) {
+    const auto sensor = rig->second.find(item.sensor);
+    if (sensor == rig->second.end()) {
       cursor.Fail(
           fmt::format("frame {} has data of sensor {}, which rig {} lacks",
                       id,
@@ -109,7 +99,15 @@ void SparseModelBuilder::AddFrame(const InputCursor& cursor,
     if (!images_in_frames_.insert(image_id).second) {
       cursor.Fail(fmt::format("image {} is in two frames", image_id));
     }
-    frame_image_ids_.push_back(image_id);
+    if (!sensor->second) {
+      cursor.Fail(fmt::format(
+          "frame {} has image {} of camera {}, which has no pose in rig {}",
+          id,
+          image_id,
+          item.sensor.id,
+          rig_id));
+    }
+    frame_images_.emplace_back(image_id, Composed(*sensor->second, frame_pose));
   }
 }
 
@@ -122,9 +120,14 @@ void SparseModelBuilder::ApplyFrames(const InputCursor& cursor) {
   }
   std::vector<SparseImage> ordered;
   ordered.reserve(model_.images.size());
-  for (const uint32_t id : frame_image_ids_) {
+  for (const auto& [id, pose] : frame_images_) {
     int& index = image_index_.at(id);
-    ordered.push_back(std::move(model_.images[static_cast<size_t>(index)]));
+    SparseImage& image = model_.images[static_cast<size_t>(index)];
+    replaced_poses_.push_back(
+        {image.cam_from_world_rotation, image.cam_from_world_translation});
+    image.cam_from_world_rotation = pose.rotation;
+    image.cam_from_world_translation = pose.translation;
+    ordered.push_back(std::move(image));
     index = static_cast<int>(ordered.size()) - 1;
   }
   model_.images = std::move(ordered);

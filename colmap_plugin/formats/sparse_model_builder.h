@@ -6,8 +6,10 @@
 #pragma once
 
 #include "colmap_plugin/formats/input_file.h"
+#include "colmap_plugin/formats/model_pose.h"
 #include "colmap_plugin/formats/sparse_model.h"
 
+#include <optional>
 #include <set>
 #include <unordered_map>
 #include <utility>
@@ -27,6 +29,12 @@ struct SensorId {
 constexpr int32_t kCameraSensor = 0;
 constexpr int32_t kImuSensor = 1;
 
+struct RigSensor {
+  SensorId id;
+  // Nothing if unknown. The reference sensor is the rig's origin.
+  std::optional<PoseRecord> sensor_from_rig;
+};
+
 struct FrameData {
   SensorId sensor;
   uint64_t id = 0;  // of a camera: the image id
@@ -40,25 +48,24 @@ class SparseModelBuilder {
  public:
   void AddCamera(const InputCursor& cursor, uint32_t id, SparseCamera camera);
 
-  // rotation: w, x, y, z as in the file.
   void AddImage(const InputCursor& cursor,
                 uint32_t id,
-                const double rotation[4],
-                const double translation[3],
+                const PoseRecord& cam_from_world,
                 uint32_t camera_id,
                 std::string name);
 
   void AddRig(const InputCursor& cursor,
               uint32_t id,
-              std::set<SensorId> sensors);
+              const std::vector<RigSensor>& sensors);
 
   void AddFrame(const InputCursor& cursor,
                 uint32_t id,
                 uint32_t rig_id,
+                const PoseRecord& rig_from_world,
                 const std::set<FrameData>& data);
 
-  // After the last frame: puts the images into the order of the frames.
-  // A model without rigs and frames keeps the order of its images file.
+  // After the last frame: gives the images the poses and the order of the
+  // frames. A model without rigs and frames keeps those of its images file.
   void ApplyFrames(const InputCursor& cursor);
 
   void AddPoint(const InputCursor& cursor,
@@ -69,15 +76,25 @@ class SparseModelBuilder {
   // After the last point.
   void CheckPointIds(const InputCursor& cursor);
 
+  // Of the images file, in the order of the images, if frames replaced them;
+  // else empty.
+  const std::vector<RigidPose>& replaced_poses() const {
+    return replaced_poses_;
+  }
+
+  const SparseModel& model() const { return model_; }
   SparseModel Release() { return std::move(model_); }
 
  private:
   SparseModel model_;
   std::unordered_map<uint32_t, int> image_index_;
-  std::map<uint32_t, std::set<SensorId>> rigs_;
+  // Per rig: sensor_from_rig of each sensor, where it is known.
+  std::map<uint32_t, std::map<SensorId, std::optional<RigidPose>>> rigs_;
   std::set<uint32_t> frame_ids_;
-  std::vector<uint32_t> frame_image_ids_;  // in frame order
+  // In frame order: image id and cam_from_world.
+  std::vector<std::pair<uint32_t, RigidPose>> frame_images_;
   std::set<uint32_t> images_in_frames_;
+  std::vector<RigidPose> replaced_poses_;
   std::vector<std::pair<uint64_t, uint64_t>>
       point_ids_;  // id, place in the file
 };

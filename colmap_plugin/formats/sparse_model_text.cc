@@ -30,6 +30,13 @@ void ReadNumbers(const LineReader& lines,
     values[i] = ReadNumber<double>(lines, words, what);
 }
 
+PoseRecord ReadPose(const LineReader& lines, Words* words) {
+  PoseRecord pose;
+  ReadNumbers(lines, words, pose.rotation, 4, "a quaternion");
+  ReadNumbers(lines, words, pose.translation, 3, "a translation");
+  return pose;
+}
+
 SensorId ReadSensorId(const LineReader& lines, Words* words) {
   SensorId sensor;
   const std::string_view type = words->Next();
@@ -42,6 +49,14 @@ SensorId ReadSensorId(const LineReader& lines, Words* words) {
   }
   sensor.id = ReadNumber<uint32_t>(lines, words, "a sensor id");
   return sensor;
+}
+
+bool ReadHasPose(const LineReader& lines, Words* words) {
+  const std::string_view word = words->Next();
+  if (word != "0" && word != "1") {
+    lines.Fail("expected 0 or 1 for whether the sensor has a pose");
+  }
+  return word == "1";
 }
 
 }  // namespace
@@ -79,13 +94,10 @@ void ReadImagesText(const std::filesystem::path& path,
   while (NextRecord(&lines)) {
     Words words(lines.line());
     const auto id = ReadNumber<uint32_t>(lines, &words, "an image id");
-    double rotation[4];
-    double translation[3];
-    ReadNumbers(lines, &words, rotation, 4, "a quaternion");
-    ReadNumbers(lines, &words, translation, 3, "a translation");
+    const PoseRecord cam_from_world = ReadPose(lines, &words);
     const auto camera_id = ReadNumber<uint32_t>(lines, &words, "a camera id");
     builder->AddImage(
-        lines, id, rotation, translation, camera_id, std::string(words.Rest()));
+        lines, id, cam_from_world, camera_id, std::string(words.Rest()));
 
     // The line of image points is not needed, but an image line in its place
     // would be lost: points come in threes (x, y, point id) and hold numbers
@@ -114,15 +126,19 @@ void ReadRigsText(const std::filesystem::path& path,
     const auto id = ReadNumber<uint32_t>(lines, &words, "a rig id");
     const auto num_sensors =
         ReadNumber<uint32_t>(lines, &words, "a number of sensors");
-    std::set<SensorId> sensors;
+    std::vector<RigSensor> sensors;
     for (uint32_t i = 0; i < num_sensors; ++i) {
-      sensors.insert(ReadSensorId(lines, &words));
-      if (i == 0) continue;  // the reference sensor has no pose in the rig
-      double pose[7];
-      if (words.Next() == "1") ReadNumbers(lines, &words, pose, 7, "a pose");
+      RigSensor sensor;
+      sensor.id = ReadSensorId(lines, &words);
+      if (i == 0) {  // the reference sensor: the file holds no pose
+        sensor.sensor_from_rig = PoseRecord();
+      } else if (ReadHasPose(lines, &words)) {
+        sensor.sensor_from_rig = ReadPose(lines, &words);
+      }
+      sensors.push_back(sensor);
     }
     CheckAtEnd(lines, words);
-    builder->AddRig(lines, id, std::move(sensors));
+    builder->AddRig(lines, id, sensors);
   }
 }
 
@@ -133,8 +149,7 @@ void ReadFramesText(const std::filesystem::path& path,
     Words words(lines.line());
     const auto id = ReadNumber<uint32_t>(lines, &words, "a frame id");
     const auto rig_id = ReadNumber<uint32_t>(lines, &words, "a rig id");
-    double pose[7];
-    ReadNumbers(lines, &words, pose, 7, "a pose");
+    const PoseRecord rig_from_world = ReadPose(lines, &words);
     const auto num_data =
         ReadNumber<uint32_t>(lines, &words, "a number of data ids");
     std::set<FrameData> data;
@@ -143,7 +158,7 @@ void ReadFramesText(const std::filesystem::path& path,
       data.insert({sensor, ReadNumber<uint64_t>(lines, &words, "a data id")});
     }
     CheckAtEnd(lines, words);
-    builder->AddFrame(lines, id, rig_id, data);
+    builder->AddFrame(lines, id, rig_id, rig_from_world, data);
   }
   builder->ApplyFrames(lines);
 }

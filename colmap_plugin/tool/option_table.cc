@@ -103,7 +103,9 @@ std::vector<OptionSpec> MakeTable() {
       Stereo(kCommon, "max_image_size", &P::max_image_size, Anything(),
              "Longest image side in pixels; larger images are shrunk; <= 0: no limit"),
       Stereo(kCommon, "geom_consistency", &P::geom_consistency, Anything(),
-             "Add the geometric passes and write *.geometric.bin; 0: only *.photometric.bin"),
+             "Add the geometric passes, which make depths agree between images and find surfaces with "
+             "little texture, and write *.geometric.bin; 0: only *.photometric.bin, for a quick look: "
+             "less dense, with many more gross errors"),
       Hpm(kCommon, "method", &H::method, OneOf(MethodNames()),
           "hpm_plus: the default, made to be at least as good as the others on every scene; hpm, "
           "hpm_fast: HPM-MVS as published; the others are rows of the paper's ablation (docs/ablation.md)"),
@@ -138,7 +140,8 @@ std::vector<OptionSpec> MakeTable() {
       Row(kColmap, "default_random_seed", Seed, Anything(),
           "The same as random_seed (COLMAP 3.13 and later)"),
       Stereo(kColmap, "depth_min", &P::depth_min, CheckedTogether(kDepthRule),
-             "Near end of the depth range in model units; -1: from the sparse points"),
+             "Near end of the depth range in model units; nothing outside is published; -1: from the "
+             "sparse points, with some slack"),
       Stereo(kColmap, "depth_max", &P::depth_max, CheckedTogether(kDepthRule),
              "Far end of the depth range"),
       Stereo(kColmap, "window_radius", &P::window_radius, Between(1, 32),

@@ -12,7 +12,15 @@ bool IsPmvs(const WorkspaceOptions& workspace) {
          (workspace.format[0] == 'P' || workspace.format[0] == 'p');
 }
 
-std::string FusionCommand(const ControllerOptions& options) {
+// Points of fusion must be seen by --StereoFusion.min_num_pixels images, 5 by
+// default, of which few images leave little or nothing. 0: the default will do.
+int MinNumPixels(int num_images) {
+  if (num_images < 1 || num_images > 5) return 0;
+  return num_images <= 2 ? num_images : num_images - 1;
+}
+
+std::string FusionCommand(const ControllerOptions& options,
+                          const RunSummary& summary) {
   const WorkspaceOptions& workspace = options.workspace;
   std::string command = "colmap stereo_fusion --workspace_path " +
                         ShellWord(workspace.path.string());
@@ -22,8 +30,24 @@ std::string FusionCommand(const ControllerOptions& options) {
   }
   command += options.patch_match.geom_consistency ? " --input_type geometric"
                                                   : " --input_type photometric";
-  return command + " --output_path " +
-         ShellWord((workspace.path / "fused.ply").string());
+  command +=
+      " --output_path " + ShellWord((workspace.path / "fused.ply").string());
+  const int min_num_pixels = MinNumPixels(summary.num_fusable);
+  if (min_num_pixels > 0)
+    command += fmt::format(" --StereoFusion.min_num_pixels {}", min_num_pixels);
+  return command;
+}
+
+// Empty if nothing worth a line was lost.
+std::string LossesLine(const FilterLosses& losses) {
+  constexpr double kTooLittle = 0.0005;
+  std::vector<std::string> parts;
+  for (const auto& [criterion, share] : losses) {
+    if (share < kTooLittle) continue;
+    parts.push_back(fmt::format("{} {:.1f} %", NameOf(criterion), 100 * share));
+  }
+  if (parts.empty()) return "";
+  return fmt::format("Pixels dropped by: {}", fmt::join(parts, ", "));
 }
 
 }  // namespace
@@ -40,6 +64,8 @@ std::vector<std::string> SummaryLines(const ControllerOptions& options,
   if (summary.num_computed > 0) {
     lines.push_back(fmt::format("Pixels with a depth: {:.1f} %",
                                 100 * summary.valid_pixel_share));
+    const std::string losses = LossesLine(summary.filter_losses);
+    if (!losses.empty()) lines.push_back(losses);
   }
   lines.push_back(
       fmt::format("Time {}, peak memory {:.2f} GiB{}",
@@ -54,7 +80,13 @@ std::vector<std::string> SummaryLines(const ControllerOptions& options,
   lines.push_back(fmt::format("Maps: {} and {}",
                               (stereo / "depth_maps").string(),
                               (stereo / "normal_maps").string()));
-  lines.push_back("Next: " + FusionCommand(options));
+  if (MinNumPixels(summary.num_fusable) > 0) {
+    lines.push_back(fmt::format(
+        "{} images with maps: fusion wants every point seen in 5 unless told "
+        "otherwise",
+        summary.num_fusable));
+  }
+  lines.push_back("Next: " + FusionCommand(options, summary));
   return lines;
 }
 

@@ -1,9 +1,11 @@
 #include "colmap_plugin/workspace/depth_range.h"
 
+#include "colmap_plugin/workspace/range_estimate.h"
 #include "src/base/error.h"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -35,39 +37,22 @@ bool IsRange(const DepthRange& range) {
   return range.min > 0 && range.min < range.max && std::isfinite(range.max);
 }
 
-std::vector<std::optional<DepthRange>> AutomaticRanges(
-    const Workspace& workspace) {
-  std::vector<std::vector<float>> depths(workspace.num_images());
-  for (const SparsePoint& point : workspace.model().points) {
-    const Eigen::Vector3f xyz = point.xyz.cast<float>();
-    for (const int image : point.track) {
-      if (!workspace.usable(image)) continue;
-      const float z =
-          CamFromWorld(workspace.camera(image), {xyz.x(), xyz.y(), xyz.z()}).z;
-      if (z > 0 && std::isfinite(z)) depths[image].push_back(z);
-    }
-  }
-  std::vector<std::optional<DepthRange>> ranges(depths.size());
-  for (size_t image = 0; image < depths.size(); ++image) {
-    if (depths[image].empty()) continue;
-    const DepthRange range =
-        Widened({kLowerFactor * DepthPercentile(0.01f, &depths[image]),
-                 kUpperFactor * DepthPercentile(0.99f, &depths[image])});
-    if (IsRange(range)) ranges[image] = range;
-  }
-  return ranges;
-}
-
 }  // namespace
+
+std::optional<DepthRange> RangeOfDepths(std::vector<float> depths) {
+  if (depths.empty()) return std::nullopt;
+  const DepthRange range =
+      Widened({kLowerFactor * DepthPercentile(0.01f, &depths),
+               kUpperFactor * DepthPercentile(0.99f, &depths)});
+  if (!IsRange(range)) return std::nullopt;
+  return range;
+}
 
 DepthRanges::DepthRanges(const Workspace& workspace,
                          double given_min,
-                         double given_max)
-    : workspace_(workspace) {
-  if (given_min < 0 || given_max < 0) {
-    automatic_ = AutomaticRanges(workspace);
-    return;
-  }
+                         double given_max) {
+  ReadTracks(workspace);
+  if (given_min < 0 || given_max < 0) return;
   given_ =
       Widened({static_cast<float>(given_min), static_cast<float>(given_max)});
   if (!(given_min <= given_max) || !IsRange(*given_)) {
@@ -82,17 +67,37 @@ DepthRanges::DepthRanges(const Workspace& workspace,
   }
 }
 
-DepthRange DepthRanges::ForImage(int image) const {
-  if (given_) return *given_;
-  if (!automatic_[image]) {
-    throw Error(ErrorCode::kBadInput,
-                fmt::format("image {} sees no sparse points, so its depth "
-                            "range is unknown; set "
-                            "both --PatchMatchStereo.depth_min and "
-                            "--PatchMatchStereo.depth_max",
-                            workspace_.ImageName(image)));
+DepthRanges::~DepthRanges() = default;
+
+void DepthRanges::ReadTracks(const Workspace& workspace) {
+  std::vector<std::vector<float>> depths(workspace.num_images());
+  for (const SparsePoint& point : workspace.model().points) {
+    for (const int image : point.track) {
+      if (!workspace.usable(image)) continue;
+      const auto z = static_cast<float>(workspace.Depth(image, point.xyz));
+      if (z > 0 && std::isfinite(z)) depths[image].push_back(z);
+    }
   }
-  return *automatic_[image];
+  automatic_.resize(depths.size());
+  for (int image = 0; image < workspace.num_images(); ++image) {
+    if (depths[image].size() >= kEnoughPoints) {
+      automatic_[image] = RangeOfDepths(std::move(depths[image]));
+    } else {
+      too_few_.emplace(image, std::move(depths[image]));
+    }
+  }
+  estimator_ = std::make_unique<RangeEstimator>(workspace);
+}
+
+std::optional<DepthRange> DepthRanges::ForImage(int image) const {
+  if (given_) {
+    const DepthRange seen = automatic_[image].value_or(*given_);
+    return DepthRange{
+        std::clamp(seen.min, given_->min / kSearchedBeyond, given_->min),
+        std::clamp(seen.max, given_->max, kSearchedBeyond * given_->max)};
+  }
+  if (!IsEstimated(image)) return automatic_[image];
+  return estimator_->Estimate(image, too_few_.at(image), automatic_);
 }
 
 }  // namespace hpm

@@ -72,7 +72,9 @@ std::optional<ImageSize> JpegSize(HeaderReader& reader) {
       reader.Skip(1);  // bits per sample
       const uint32_t height = reader.Read(2, true);
       const uint32_t width = reader.Read(2, true);
-      return MakeSize(reader, width, height);
+      std::optional<ImageSize> size = MakeSize(reader, width, height);
+      if (size) size->is_jpeg = true;
+      return size;
     }
     reader.Skip(length - 2);
   }
@@ -84,7 +86,9 @@ std::optional<ImageSize> PngSize(HeaderReader& reader) {
   if (reader.Read(4, true) != 0x49484452u) return std::nullopt;  // "IHDR"
   const uint32_t width = reader.Read(4, true);
   const uint32_t height = reader.Read(4, true);
-  return MakeSize(reader, width, height);
+  std::optional<ImageSize> size = MakeSize(reader, width, height);
+  if (size && reader.Read(1, true) == 16) size->depth = SampleDepth::k16;
+  return size;
 }
 
 std::optional<ImageSize> BmpSize(HeaderReader& reader) {
@@ -102,22 +106,39 @@ std::optional<ImageSize> BmpSize(HeaderReader& reader) {
       reader, width, static_cast<uint64_t>(height < 0 ? -height : height));
 }
 
-// TIFF 6.0, section 2: ImageWidth and ImageLength of the first directory.
+// Of all samples of a pixel the first speaks for the others.
+SampleDepth DepthOf(uint32_t bits, uint32_t format) {
+  constexpr uint32_t kUnsigned = 1;
+  if (format != kUnsigned || bits > 16) return SampleDepth::kOther;
+  return bits > 8 ? SampleDepth::k16 : SampleDepth::k8;
+}
+
+// TIFF 6.0, section 2: ImageWidth, ImageLength, BitsPerSample and SampleFormat
+// of the first directory.
 std::optional<ImageSize> TiffSize(HeaderReader& reader, bool big_endian) {
-  constexpr uint32_t kWidthTag = 256, kHeightTag = 257, kShort = 3, kLong = 4;
+  constexpr uint32_t kWidthTag = 256, kHeightTag = 257, kBitsTag = 258,
+                     kFormatTag = 339, kShort = 3, kLong = 4;
   reader.Seek(4);
   reader.Seek(reader.Read(4, big_endian));
   const uint32_t num_entries = reader.Read(2, big_endian);
   uint32_t width = 0;
   uint32_t height = 0;
-  for (uint32_t i = 0;
-       i < num_entries && reader.ok() && (width == 0 || height == 0);
-       ++i) {
+  uint32_t bits = 1;
+  uint32_t format = 1;
+  std::optional<ImageSize> size;
+  // Where they stand if there are too many for the directory.
+  uint32_t bits_offset = 0;
+  uint32_t format_offset = 0;
+  for (uint32_t i = 0; i < num_entries && reader.ok(); ++i) {
     const uint32_t tag = reader.Read(2, big_endian);
     const uint32_t type = reader.Read(2, big_endian);
-    reader.Skip(4);  // count
+    const uint32_t count = reader.Read(4, big_endian);
     uint32_t value = 0;
-    if (type == kShort) {
+    if (tag == kBitsTag && type == kShort && count > 2) {
+      bits_offset = reader.Read(4, big_endian);
+    } else if (tag == kFormatTag && type == kShort && count > 2) {
+      format_offset = reader.Read(4, big_endian);
+    } else if (type == kShort) {
       value = reader.Read(2, big_endian);
       reader.Skip(2);
     } else if (type == kLong) {
@@ -127,16 +148,31 @@ std::optional<ImageSize> TiffSize(HeaderReader& reader, bool big_endian) {
     }
     if (tag == kWidthTag) width = value;
     if (tag == kHeightTag) height = value;
+    if (tag == kBitsTag && bits_offset == 0) bits = value;
+    if (tag == kFormatTag && format_offset == 0) format = value;
+    if (!size && width > 0 && height > 0)
+      size = MakeSize(reader, width, height);
   }
-  return MakeSize(reader, width, height);
+  if (!size) return std::nullopt;
+  const auto read_first = [&](uint32_t offset, uint32_t* value) {
+    if (offset == 0 || !reader.ok()) return;
+    reader.Seek(offset);
+    *value = reader.Read(2, big_endian);
+  };
+  read_first(bits_offset, &bits);
+  read_first(format_offset, &format);
+  size->depth = DepthOf(bits, format);
+  return size;
 }
 
 std::optional<ImageSize> DecodedSize(const std::filesystem::path& path) {
   try {
-    const cv::Mat image = cv::imread(
-        path.string(), cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
+    const cv::Mat image = cv::imread(path.string(), cv::IMREAD_UNCHANGED);
     if (image.empty()) return std::nullopt;
-    return ImageSize{image.cols, image.rows};
+    ImageSize size = {image.cols, image.rows};
+    if (image.depth() == CV_16U) size.depth = SampleDepth::k16;
+    if (image.depth() > CV_16U) size.depth = SampleDepth::kOther;
+    return size;
   } catch (const cv::Exception&) {
     return std::nullopt;
   }

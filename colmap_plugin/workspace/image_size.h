@@ -1,7 +1,7 @@
-// Width and height of an image file as stored (EXIF rotation ignored, as COLMAP
-// does), without decoding it where the header can be read here: JPEG, PNG, BMP,
-// TIFF. All else is decoded by OpenCV. The file's first bytes decide, not
-// its extension.
+// Width, height and depth of an image file as stored (EXIF rotation ignored, as
+// COLMAP does), without decoding it where the header can be read here: JPEG,
+// PNG, BMP, TIFF. All else is decoded by OpenCV. The file's first bytes decide,
+// not its extension.
 #pragma once
 
 #include <filesystem>
@@ -13,9 +13,15 @@ namespace hpm {
 inline constexpr int kMaxImageSide = 1 << 20;  // pixels
 inline constexpr long long kMaxImagePixels = 1 << 30;
 
+// How many bits a sample has: up to 8, 9 to 16 (no sign), or another number
+// (more, floating point, with a sign).
+enum class SampleDepth { k8, k16, kOther };
+
 struct ImageSize {
   int width = 0;
   int height = 0;
+  SampleDepth depth = SampleDepth::k8;
+  bool is_jpeg = false;
 };
 
 // Positive and within the limits above.

@@ -109,6 +109,7 @@ void PrepareOutputs(const Workspace& workspace,
                     const LogSink& log) {
   std::set<fs::path> folders = {workspace.StatePath()};
   for (const StereoProblem& problem : problems) {
+    if (!problem.is_reference) continue;
     for (const MapKind kind :
          {MapKind::kDepth, MapKind::kNormal, MapKind::kConsistencyGraph}) {
       folders.insert(workspace.MapPath(problem.ref_image, kind, "photometric")
@@ -130,7 +131,8 @@ void PrepareOutputs(const Workspace& workspace,
   if (!fs::exists(workspace.FusionCfgPath(), error)) {
     std::vector<std::string> names;
     for (const StereoProblem& problem : problems) {
-      names.push_back(workspace.ImageName(problem.ref_image));
+      if (problem.is_reference)
+        names.push_back(workspace.ImageName(problem.ref_image));
     }
     WriteFusionCfg(workspace.FusionCfgPath(), names);
   } else if (log) {

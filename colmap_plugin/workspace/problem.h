@@ -1,9 +1,10 @@
 // What has to be solved: reference images, their sources and depth ranges.
 #pragma once
 
-#include "colmap_plugin/workspace/workspace.h"
+#include "colmap_plugin/workspace/depth_range.h"
 
 #include <filesystem>
+#include <limits>
 #include <vector>
 
 namespace hpm {
@@ -12,9 +13,14 @@ struct StereoProblem {
   int ref_image = -1;           // image index
   std::vector<int> src_images;  // image indices, best first, without repeats
                                 // and without ref_image; all have a picture
-  float depth_min =
-      0;  // model units, COLMAP's [0.75 P1, 1.25 P99] or as given by the user
+  // To search, model units; see DepthRanges.
+  float depth_min = 0;
   float depth_max = 0;
+  // Depths outside are not published.
+  DepthRange published = {0, std::numeric_limits<float>::infinity()};
+  // False: only a source of references, see SourceProblems(). Its maps are for
+  // other problems and not published.
+  bool is_reference = true;
 };
 
 struct ProblemOptions {
@@ -30,10 +36,11 @@ struct ProblemOptions {
 bool CanBeComputed(const Workspace& workspace, const StereoProblem& problem);
 
 // In file order, one problem per reference (a repeated reference keeps its
-// first entry). Images without any source are skipped with COLMAP's warning;
-// those that have no picture, or whose sources all have none (src_images is
-// empty then), are kept, as problems that fail.
-// Throws Error(kBadInput) naming cfg file and line.
+// first entry). Images without any source or of unknown depth range are skipped
+// with a warning, and another one says if fusion will find nothing in common
+// between the images; those that have no picture, or whose sources all have
+// none (src_images is empty then), are kept, as problems that fail. Throws
+// Error(kBadInput) naming cfg file and line, or if nothing is left to do.
 std::vector<StereoProblem> ReadProblems(const Workspace& workspace,
                                         const ProblemOptions& options,
                                         const LogSink& log);

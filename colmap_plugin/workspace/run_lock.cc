@@ -1,20 +1,17 @@
 #include "colmap_plugin/workspace/run_lock.h"
 
 #include "colmap_plugin/formats/image_name.h"
+#include "colmap_plugin/workspace/lock_owner.h"
 #include "src/base/error.h"
 
+#include <algorithm>
 #include <cerrno>
-#include <chrono>
-#include <csignal>
-#include <fstream>
-#include <iterator>
+#include <cmath>
 #include <optional>
-#include <sstream>
-#include <thread>
+#include <system_error>
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -24,19 +21,13 @@ namespace fs = std::filesystem;
 namespace {
 
 // A lock that stays unreadable for this long was left by a run that died while
-// it wrote these few bytes.
-constexpr int kMaxReads = 10;
-constexpr auto kReadInterval = std::chrono::milliseconds(10);
+// it wrote these few bytes; an flock that is held for this long is no taker's,
+// who looks at the file and lets go.
+constexpr int kMaxTries = 10;
+constexpr auto kTryInterval = std::chrono::milliseconds(10);
 // Lost races against other takers before giving up.
 constexpr int kMaxAttempts = 100;
 constexpr size_t kMaxLockBytes = 4096;
-
-struct LockOwner {
-  std::string host;
-  std::string pid_namespace;  // "" where unknown
-  int64_t pid = 0;
-  uint64_t start_time = 0;  // clock ticks since boot, 0 where unknown
-};
 
 class FileDescriptor {
  public:
@@ -52,88 +43,45 @@ class FileDescriptor {
   int fd_;
 };
 
-struct ProcessStatus {
-  char state = '?';
-  uint64_t start_time = 0;
-};
-
-// proc(5), /proc/<pid>/stat: fields 3 and 22, counted from behind the command
-// name.
-std::optional<ProcessStatus> ReadProcessStatus(int64_t pid) {
-  std::ifstream file(fmt::format("/proc/{}/stat", pid));
-  const std::string text{std::istreambuf_iterator<char>(file),
-                         std::istreambuf_iterator<char>()};
-  const size_t name_end = text.rfind(')');
-  if (name_end == std::string::npos) return std::nullopt;
-  std::istringstream fields(text.substr(name_end + 1));
-  fields.imbue(std::locale::classic());
-  ProcessStatus status;
-  fields >> status.state;
-  std::string skipped;
-  for (int field = 4; field < 22; ++field) fields >> skipped;
-  fields >> status.start_time;
-  if (!fields) return std::nullopt;
-  return status;
+int OpenLock(const fs::path& path) {
+  return open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
 }
 
-LockOwner ThisProcess() {
-  LockOwner owner;
-  char host[256] = {};
-  if (gethostname(host, sizeof(host) - 1) == 0) owner.host = host;
-  std::error_code error;
-  owner.pid_namespace = fs::read_symlink("/proc/self/ns/pid", error).string();
-  owner.pid = getpid();
-  if (const auto status = ReadProcessStatus(owner.pid))
-    owner.start_time = status->start_time;
-  return owner;
-}
-
-std::string Format(const LockOwner& owner) {
-  const nlohmann::json json = {{"host", owner.host},
-                               {"pid_namespace", owner.pid_namespace},
-                               {"pid", owner.pid},
-                               {"start_time", owner.start_time}};
-  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-}
-
-std::optional<LockOwner> Parse(const std::string& text) {
-  const nlohmann::json json =
-      nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
-  const auto has = [&](const char* key,
-                       bool (nlohmann::json::*is)() const noexcept) {
-    return json.contains(key) && (json[key].*is)();
-  };
-  if (!json.is_object() || !has("host", &nlohmann::json::is_string) ||
-      !has("pid_namespace", &nlohmann::json::is_string) ||
-      !has("pid", &nlohmann::json::is_number_unsigned) ||
-      !has("start_time", &nlohmann::json::is_number_unsigned)) {
-    return std::nullopt;
-  }
-  LockOwner owner;
-  owner.host = json["host"];
-  owner.pid_namespace = json["pid_namespace"];
-  owner.pid = json["pid"];
-  owner.start_time = json["start_time"];
-  if (owner.pid <= 0 || owner.pid != static_cast<pid_t>(owner.pid))
-    return std::nullopt;
-  return owner;
-}
-
-std::string ReadAll(int fd) {
+// Nothing if it cannot be read.
+std::optional<std::string> ReadAll(int fd) {
   std::string text(kMaxLockBytes, '\0');
   const ssize_t n = pread(fd, text.data(), text.size(), 0);
-  text.resize(n > 0 ? static_cast<size_t>(n) : 0);
+  if (n < 0) return std::nullopt;
+  text.resize(static_cast<size_t>(n));
   return text;
 }
 
-bool IsAlive(const LockOwner& owner) {
-  if (kill(static_cast<pid_t>(owner.pid), 0) != 0 && errno == ESRCH)
-    return false;
-  const auto status = ReadProcessStatus(owner.pid);
-  if (!status) return true;
-  if (status->state == 'Z' || status->state == 'X')
-    return false;  // dead, not yet waited for
-  return owner.start_time == 0 || owner.start_time == status->start_time;
+// What stands under the name now: network file systems ask their server when a
+// file is opened and may show what they remember otherwise.
+struct LockFile {
+  std::string contents;
+  timespec touched = {};
+};
+
+std::optional<LockFile> ReadLockFile(const fs::path& path) {
+  const FileDescriptor file(OpenLock(path));
+  if (file.get() < 0) return std::nullopt;
+  struct stat status = {};
+  const std::optional<std::string> contents = ReadAll(file.get());
+  if (!contents || fstat(file.get(), &status) != 0) {
+    errno = EIO;
+    return std::nullopt;
+  }
+#ifdef __APPLE__
+  return LockFile{*contents, status.st_mtimespec};
+#else
+  return LockFile{*contents, status.st_mtim};
+#endif
+}
+
+double Seconds(const timespec& time) {
+  return static_cast<double>(time.tv_sec) +
+         1e-9 * static_cast<double>(time.tv_nsec);
 }
 
 bool IsSameFile(int fd, const fs::path& path) {
@@ -153,108 +101,251 @@ bool IsSameFile(int fd, const fs::path& path) {
                   full ? "make room on the disk" : "make the folder writable"));
 }
 
-[[noreturn]] void ThrowLocked(const fs::path& path, const LockOwner& owner) {
+std::string NameOf(const LockOwner& owner) {
+  return fmt::format("host {}, process {}", QuotedName(owner.host), owner.pid);
+}
+
+// hint: how a run that is gone is found out, else that is up to the user.
+[[noreturn]] void ThrowLocked(const fs::path& path,
+                              const LockOwner& owner,
+                              const std::string& hint) {
   throw Error(ErrorCode::kLocked,
-              fmt::format("another run (host {}, process {}) works on this "
-                          "workspace; wait for it, "
-                          "or delete {} if that run is gone",
-                          QuotedName(owner.host),
-                          owner.pid,
+              fmt::format("another run ({}) works on this workspace; wait for "
+                          "it{}, or delete {} if that run is gone",
+                          NameOf(owner),
+                          hint,
                           path.string()));
+}
+
+[[noreturn]] void ThrowOthersAreStarting(const fs::path& path) {
+  throw Error(ErrorCode::kLocked,
+              fmt::format("other runs are starting on this workspace at the "
+                          "same time; run again, "
+                          "or delete {} if there are none",
+                          path.string()));
+}
+
+enum class Flock { kTaken, kHeldByAnother, kUnsupported };
+
+Flock TryFlock(int fd) {
+  if (flock(fd, LOCK_EX | LOCK_NB) == 0) return Flock::kTaken;
+  return errno == EWOULDBLOCK ? Flock::kHeldByAnother : Flock::kUnsupported;
+}
+
+}  // namespace
+
+RunLock::RunLock(const fs::path& state_path,
+                 const LogSink& log,
+                 CancelToken* stop,
+                 const LockRules& rules)
+    : path_(state_path / "lock"), stop_(stop), rules_(rules) {
+  std::error_code error;
+  fs::create_directories(state_path, error);
+  if (error) ThrowSystemError(path_, error.value());
+  const LockOwner self = ThisProcess();
+  int attempt = 0;
+  while (!TryCreate(self)) {
+    if (++attempt == kMaxAttempts) ThrowOthersAreStarting(path_);
+    RemoveStale(self, log);
+  }
+  try {
+    if (may_have_rivals_) {
+      Wait(rules_.settle);
+      const auto now = ReadLockFile(path_);
+      if (!now || now->contents != contents_) ThrowOthersAreStarting(path_);
+    }
+    heart_ = std::thread([this] { KeepAlive(); });
+  } catch (...) {
+    Release();
+    throw;
+  }
+}
+
+RunLock::~RunLock() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    ending_ = true;
+  }
+  wake_.notify_all();
+  heart_.join();
+  Release();
+}
+
+void RunLock::ThrowIfLost() const {
+  const auto now = ReadLockFile(path_);
+  // A server that does not answer has not given the lock away.
+  if (now ? now->contents == contents_ : errno != ENOENT) return;
+  const auto owner = now ? ParseLockOwner(now->contents) : std::nullopt;
+  throw Error(
+      ErrorCode::kLocked,
+      fmt::format(
+          "{} is not this run's any more ({}), so it stops; what it finished "
+          "stays, give the same command again when no other run is at work",
+          path_.string(),
+          owner ? "it was taken over by " + NameOf(*owner) : "it was deleted"));
+}
+
+bool RunLock::TryCreate(LockOwner self) {
+  fd_ = open(
+      path_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+  if (fd_ < 0) {
+    if (errno == EEXIST) return false;
+    ThrowSystemError(path_, errno);
+  }
+  if (rules_.is_local(fd_)) {
+    int result;
+    while ((result = flock(fd_, LOCK_EX)) != 0 && errno == EINTR) {
+    }
+    self.flock = result == 0;
+  }
+  self.heartbeat = true;
+  contents_ = FormatLockOwner(self);
+  const ssize_t n = write(fd_, contents_.data(), contents_.size());
+  int error = 0;
+  if (n != static_cast<ssize_t>(contents_.size()))
+    error = n < 0 ? errno : ENOSPC;
+  // For other machines to see.
+  if (error == 0 && fsync(fd_) != 0 && errno != EINVAL && errno != ENOTSUP)
+    error = errno;
+  const bool is_named = IsSameFile(fd_, path_);
+  if (error == 0 && is_named) return true;
+  // Not named: a taker thought the empty file stale.
+  if (is_named) unlink(path_.c_str());
+  close(fd_);
+  fd_ = -1;
+  if (error != 0) ThrowSystemError(path_, error);
+  return false;
+}
+
+void RunLock::Release() {
+  const auto now = ReadLockFile(path_);
+  if (now && now->contents == contents_) unlink(path_.c_str());
+  close(fd_);
 }
 
 // Removes the lock of a dead process; throws Error(kLocked) if the owner lives.
 // Returns without removing anything if the file changed meanwhile: try again.
 //
-// Takers exclude each other, and creators that are still writing, by flock() on
-// the stale file itself: whoever holds it, still finds that very file under the
-// name and reads what he read before may remove it, since nobody else removes a
-// file he has not locked. (Owners remove theirs only while they live.)
-void RemoveStaleLock(const fs::path& path, const LockOwner& self) {
-  const FileDescriptor file(
-      open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+// On a local file system takers exclude each other, and creators that are still
+// writing, by flock() on the stale file itself: whoever holds it, still finds
+// that very file under the name and reads what he read before may remove it,
+// since nobody else removes a file he has not locked. (Owners remove theirs
+// only while they live.) Elsewhere two takers may both remove the file, the
+// later one the lock that the earlier one has made by then. So a taker waits
+// before he starts, longer than an owner needs to notice and stop.
+void RunLock::RemoveStale(const LockOwner& self, const LogSink& log) {
+  const FileDescriptor file(OpenLock(path_));
   if (file.get() < 0) {
     if (errno == ENOENT) return;
-    ThrowSystemError(path, errno);
-  }
-  std::string contents = ReadAll(file.get());
-  std::optional<LockOwner> owner = Parse(contents);
-  for (int i = 0; !owner && i < kMaxReads; ++i) {
-    std::this_thread::sleep_for(kReadInterval);
-    contents = ReadAll(file.get());
-    owner = Parse(contents);
-  }
-  if (owner) {
-    const bool visible =
-        owner->host == self.host && owner->pid_namespace == self.pid_namespace;
-    if (!visible || IsAlive(*owner)) {
-      if (IsSameFile(file.get(), path)) ThrowLocked(path, *owner);
-      return;
-    }
-  }
-  if (flock(file.get(), LOCK_EX | LOCK_NB) != 0) {
-    if (errno == EWOULDBLOCK) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-      return;
-    }
-    throw Error(
-        ErrorCode::kLocked,
-        fmt::format(
-            "{} was left by a run that is gone; delete it and run again",
-            path.string()));
-  }
-  if (!IsSameFile(file.get(), path) || ReadAll(file.get()) != contents) return;
-  if (unlink(path.c_str()) != 0 && errno != ENOENT)
-    ThrowSystemError(path, errno);
-}
-
-}  // namespace
-
-RunLock::RunLock(const fs::path& state_path) : path_(state_path / "lock") {
-  std::error_code error;
-  fs::create_directories(state_path, error);
-  if (error) ThrowSystemError(path_, error.value());
-  const LockOwner self = ThisProcess();
-  contents_ = Format(self);
-  for (int attempt = 0; attempt < kMaxAttempts; ++attempt) {
-    if (TryCreate()) return;
-    RemoveStaleLock(path_, self);
-  }
-  throw Error(ErrorCode::kLocked,
-              fmt::format("other runs are starting on this workspace at the "
-                          "same time; run again, "
-                          "or delete {} if there are none",
-                          path_.string()));
-}
-
-RunLock::~RunLock() {
-  // After a takeover by hand (file deleted, other run started) it is not ours.
-  const FileDescriptor file(
-      open(path_.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
-  if (file.get() >= 0 && ReadAll(file.get()) == contents_)
-    unlink(path_.c_str());
-}
-
-bool RunLock::TryCreate() {
-  const FileDescriptor file(
-      open(path_.c_str(),
-           O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC,
-           0666));
-  if (file.get() < 0) {
-    if (errno == EEXIST) return false;
     ThrowSystemError(path_, errno);
   }
-  // Fails where there is no flock; takers give up there, too.
-  while (flock(file.get(), LOCK_EX) != 0 && errno == EINTR) {
+  std::optional<std::string> contents;
+  std::optional<LockOwner> owner;
+  for (int i = 0; i <= kMaxTries && !owner; ++i) {
+    if (i > 0) std::this_thread::sleep_for(kTryInterval);
+    contents = ReadAll(file.get());
+    if (!contents) ThrowSystemError(path_, errno);
+    owner = ParseLockOwner(*contents);
   }
-  const ssize_t n = write(file.get(), contents_.data(), contents_.size());
-  if (n != static_cast<ssize_t>(contents_.size())) {
-    const int error = n < 0 ? errno : ENOSPC;
-    if (IsSameFile(file.get(), path_)) unlink(path_.c_str());
-    ThrowSystemError(path_, error);
+  const bool is_local = rules_.is_local(file.get());
+  const bool flock_tells = is_local && owner && owner->flock;
+  const bool is_visible = owner && IsVisible(*owner, self);
+  const bool heartbeat_tells =
+      owner && !flock_tells && !is_visible && owner->heartbeat;
+  const auto throw_locked = [&] {
+    if (!IsSameFile(file.get(), path_)) return;
+    ThrowLocked(
+        path_,
+        *owner,
+        heartbeat_tells
+            ? fmt::format(" (it counts as gone {} seconds after its last sign "
+                          "of life)",
+                          std::chrono::duration_cast<std::chrono::seconds>(
+                              rules_.expiry)
+                              .count())
+            : "");
+  };
+  if (owner && !flock_tells) {
+    if (is_visible ? IsAlive(*owner)
+                   : !owner->heartbeat || ShowsSignOfLife(*contents, log)) {
+      return throw_locked();
+    }
   }
-  return IsSameFile(file.get(),
-                    path_);  // else a taker thought the empty file stale
+  if (is_local) {
+    Flock taken = TryFlock(file.get());
+    for (int i = 0; i < kMaxTries && taken == Flock::kHeldByAnother; ++i) {
+      std::this_thread::sleep_for(kTryInterval);
+      taken = TryFlock(file.get());
+    }
+    if (taken == Flock::kHeldByAnother) {
+      if (flock_tells) throw_locked();
+      return;
+    }
+    if (taken == Flock::kUnsupported) may_have_rivals_ = true;
+  } else {
+    may_have_rivals_ = true;
+  }
+  const auto now = ReadLockFile(path_);
+  if (!now || now->contents != *contents || !IsSameFile(file.get(), path_))
+    return;
+  if (unlink(path_.c_str()) != 0 && errno != ENOENT)
+    ThrowSystemError(path_, errno);
+  if (heartbeat_tells) {
+    log(LogLevel::kWarning,
+        fmt::format("the lock of another run ({}) is taken over, since that "
+                    "run has given no sign of life for minutes",
+                    NameOf(*owner)));
+  } else if (owner) {
+    log(LogLevel::kInfo,
+        fmt::format("The lock of a run that is gone ({}) is taken over.",
+                    NameOf(*owner)));
+  }
+}
+
+// Also true if nothing can be told.
+bool RunLock::ShowsSignOfLife(const std::string& contents,
+                              const LogSink& log) const {
+  const auto first = ReadLockFile(path_);
+  const auto clock = FileSystemTime(path_.parent_path());
+  if (!first || !clock || first->contents != contents) return true;
+  const double age = Seconds(*clock) - Seconds(first->touched);
+  const double expiry = std::chrono::duration<double>(rules_.expiry).count();
+  // A time in the future is of another clock, and no sign of life either.
+  if (std::abs(age) < expiry) return true;
+  log(LogLevel::kInfo,
+      fmt::format(
+          "{} is of a run that seems to be gone; watching it for {:.0f} "
+          "seconds...",
+          path_.string(),
+          std::chrono::duration<double>(rules_.watch).count()));
+  Wait(rules_.watch);
+  const auto last = ReadLockFile(path_);
+  return !last || last->contents != contents ||
+         Seconds(last->touched) != Seconds(first->touched);
+}
+
+void RunLock::Wait(std::chrono::milliseconds time) const {
+  constexpr auto kStep = std::chrono::milliseconds(50);
+  const auto end = std::chrono::steady_clock::now() + time;
+  for (auto now = std::chrono::steady_clock::now(); now < end;
+       now = std::chrono::steady_clock::now()) {
+    stop_->ThrowIfCancelled();
+    std::this_thread::sleep_for(
+        std::min<std::chrono::steady_clock::duration>(kStep, end - now));
+  }
+}
+
+void RunLock::KeepAlive() {
+  std::unique_lock<std::mutex> lock(mutex_);
+  while (!wake_.wait_for(lock, rules_.heartbeat, [this] { return ending_; })) {
+    futimens(fd_, nullptr);  // by the file system's own clock
+    try {
+      ThrowIfLost();
+    } catch (...) {
+      stop_->Cancel();  // and whoever stops asks for the reason
+      return;
+    }
+  }
 }
 
 }  // namespace hpm

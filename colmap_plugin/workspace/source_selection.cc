@@ -50,20 +50,10 @@ float AnglePercentile(uint64_t num_shared, std::vector<SharedPoint>* shared) {
   return static_cast<float>(std::acos(it->abs_cos));
 }
 
-Eigen::Vector3d CenterOf(const Camera& camera) {
-  const Vec3f center = Center(camera);  // float32, as in COLMAP
-  return {center.x, center.y, center.z};
-}
-
 }  // namespace
 
 SourceSelector::SourceSelector(const Workspace& workspace)
     : workspace_(workspace), begin_(workspace.num_images() + 1, 0) {
-  centers_.reserve(workspace.num_images());
-  for (int i = 0; i < workspace.num_images(); ++i) {
-    centers_.push_back(CenterOf(workspace.camera(i)));
-  }
-
   const std::vector<SparsePoint>& points = workspace.model().points;
   std::vector<size_t> last_point(workspace.num_images(), points.size());
   const auto for_each_image_of_point = [&](const auto& visit) {
@@ -92,13 +82,14 @@ std::vector<SourceCandidate> SourceSelector::Candidates(int ref_image) const {
   std::vector<uint64_t> num_shared(workspace_.num_images(), 0);
   for (size_t k = begin_[ref_image]; k < begin_[ref_image + 1]; ++k) {
     const SparsePoint& point = workspace_.model().points[points_[k]];
-    const Eigen::Vector3d xyz = point.xyz.cast<float>().cast<double>();
     const auto weight = static_cast<uint64_t>(
         std::count(point.track.begin(), point.track.end(), ref_image));
     for (const int image : point.track) {
       if (image == ref_image || !workspace_.usable(image)) continue;
-      shared[image].push_back(
-          {AbsCosOfAngle(xyz, centers_[ref_image], centers_[image]), weight});
+      shared[image].push_back({AbsCosOfAngle(point.xyz,
+                                             workspace_.Center(ref_image),
+                                             workspace_.Center(image)),
+                               weight});
       num_shared[image] += weight;
     }
   }
@@ -114,6 +105,17 @@ std::vector<SourceCandidate> SourceSelector::Candidates(int ref_image) const {
                      return a.num_shared > b.num_shared;
                    });
   return candidates;
+}
+
+size_t SourceSelector::NumSharedPoints(int ref_image) const {
+  size_t num_shared = 0;
+  for (size_t k = begin_[ref_image]; k < begin_[ref_image + 1]; ++k) {
+    const std::vector<int>& track = workspace_.model().points[points_[k]].track;
+    num_shared += std::any_of(track.begin(), track.end(), [&](int image) {
+      return image != ref_image && workspace_.usable(image);
+    });
+  }
+  return num_shared;
 }
 
 std::vector<int> SourceSelector::Select(int ref_image,

@@ -26,13 +26,15 @@ class SourceSelector {
   // first, then by image index.
   std::vector<SourceCandidate> Candidates(int ref_image) const;
 
+  // Points of which the image shares a track with another, usable image.
+  size_t NumSharedPoints(int ref_image) const;
+
   // The first max_num candidates (negative: all) with an angle of at least
   // min_angle degrees.
   std::vector<int> Select(int ref_image, double min_angle, int max_num) const;
 
  private:
   const Workspace& workspace_;
-  std::vector<Eigen::Vector3d> centers_;  // of the cameras, world frame
   // Points of image i, each once: points_[begin_[i] .. begin_[i + 1]).
   std::vector<size_t> begin_;
   std::vector<uint32_t> points_;

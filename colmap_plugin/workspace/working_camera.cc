@@ -81,8 +81,7 @@ bool IsPinhole(const Camera& camera) {
   const auto finite = [](float value) { return std::isfinite(value); };
   return camera.fx > 0 && camera.fy > 0 && finite(camera.fx) &&
          finite(camera.fy) && finite(camera.cx) && finite(camera.cy) &&
-         std::all_of(camera.R.m, camera.R.m + 9, finite) &&
-         finite(camera.t.x) && finite(camera.t.y) && finite(camera.t.z);
+         std::all_of(camera.R.m, camera.R.m + 9, finite);
 }
 
 void LimitSize(int max_image_size, Camera* camera) {
@@ -143,7 +142,6 @@ std::optional<Camera> MakeWorkingCamera(
   }
   const Eigen::Matrix3f R =
       rotation.normalized().toRotationMatrix().cast<float>();
-  const Eigen::Vector3f t = image.cam_from_world_translation.cast<float>();
 
   Camera camera;
   camera.width = size.width;
@@ -155,9 +153,10 @@ std::optional<Camera> MakeWorkingCamera(
   for (int row = 0; row < 3; ++row) {
     for (int col = 0; col < 3; ++col) camera.R.m[3 * row + col] = R(row, col);
   }
-  camera.t = {t.x(), t.y(), t.z()};
+  camera.t = {0, 0, 0};
   LimitSize(max_image_size, &camera);
-  if (!IsPinhole(camera)) {
+  if (!IsPinhole(camera) ||
+      !image.cam_from_world_translation.cast<float>().allFinite()) {
     *why_not =
         "its pose, focal length or principal point is not a number or not "
         "positive; remove the "

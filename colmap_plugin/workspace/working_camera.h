@@ -1,5 +1,5 @@
-// From COLMAP's camera and pose to the library's pinhole camera at working
-// size.
+// From COLMAP's camera and rotation to the library's pinhole camera at working
+// size. Its centre is the origin, t zero: see Workspace::CameraAround().
 #pragma once
 
 #include "colmap_plugin/formats/sparse_model.h"
@@ -14,7 +14,7 @@ namespace hpm {
 // In this order:
 //  1. intrinsics are scaled to the size of the image file where it is known and
 //     differs (image_undistorter before 4.1.1 shrinks files but not cameras);
-//  2. K, R, t become float32; if a side exceeds max_image_size (<= 0: off) both
+//  2. K and R become float32; if a side exceeds max_image_size (<= 0: off) both
 //     sides are rounded to the scale that fits and K follows, all in float32 as
 //     COLMAP does;
 //  3. 0.5 is subtracted from cx, cy (COLMAP's model has pixel centres at +0.5,

@@ -74,6 +74,11 @@ void ReportLeftOut(const SparseModel& model, const LogSink& log) {
           most ? "; check that images and points3D are of one model" : ""));
 }
 
+Eigen::Vector3d CenterOf(const SparseImage& image) {
+  return -(image.cam_from_world_rotation.conjugate() *
+           image.cam_from_world_translation);
+}
+
 }  // namespace
 
 Workspace::Workspace(const WorkspaceOptions& options, const LogSink& log)
@@ -82,7 +87,7 @@ Workspace::Workspace(const WorkspaceOptions& options, const LogSink& log)
     ReadPmvs();
   } else {
     CheckFolder();
-    model_ = ReadSparseModel(options_.path / "sparse");
+    model_ = ReadSparseModel(options_.path / "sparse", log);
     ReportLeftOut(model_, log);
   }
   CheckNames();
@@ -97,6 +102,37 @@ int Workspace::ImageIndex(const std::string& name) const {
 
 fs::path Workspace::ImageFolder() const {
   return options_.path / (is_pmvs_ ? "visualize" : "images");
+}
+
+Camera Workspace::CameraAround(int index, int origin) const {
+  const Eigen::Vector3d t = model_.images[index].cam_from_world_rotation *
+                            (centers_[origin] - centers_[index]);
+  Camera camera = cameras_[index];
+  camera.t = {static_cast<float>(t.x()),
+              static_cast<float>(t.y()),
+              static_cast<float>(t.z())};
+  return camera;
+}
+
+double Workspace::Depth(int index, const Eigen::Vector3d& xyz) const {
+  return (model_.images[index].cam_from_world_rotation *
+          (xyz - centers_[index]))
+      .z();
+}
+
+ImageDecoding Workspace::Decoding(int index) const {
+  ImageDecoding decoding;
+  const std::optional<ImageSize>& file = file_size(index);
+  if (!file) return decoding;
+  if (file->depth != SampleDepth::k8) decoding.stretch = deep_range_;
+  if (file->is_jpeg) {
+    const Camera& camera = cameras_[index];
+    decoding.reduction =
+        ReductionFor(file->width, file->height, camera.width, camera.height);
+    decoding.file_width = file->width;
+    decoding.file_height = file->height;
+  }
+  return decoding;
 }
 
 fs::path Workspace::StereoPath() const {
@@ -172,7 +208,9 @@ void Workspace::MakeCameras(const LogSink& log) {
     const std::optional<Camera> camera = MakeWorkingCamera(
         sparse_camera, image, file.size, options_.max_image_size, &why_not);
     cameras_.push_back(camera.value_or(Camera{}));
+    centers_.push_back(CenterOf(image));
     usable_.push_back(camera.has_value());
+    file_sizes_.push_back(file.size);
     has_picture_.push_back(file.exists);
     if (!camera) {
       bad_cameras[WithoutDigits(why_not)].Add(

@@ -3,10 +3,13 @@
 #pragma once
 
 #include "colmap_plugin/formats/sparse_model.h"
+#include "colmap_plugin/workspace/image_size.h"
 #include "src/base/log.h"
 #include "src/core/camera.h"
+#include "src/image/load_image.h"
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -54,8 +57,28 @@ class Workspace {
 
   // At working size (max_image_size applied as COLMAP does), with the library's
   // pixel rule: integer (col, row) is the pixel centre (see working_camera.h).
-  // All zeros if the image is not usable.
+  // Its own centre is the origin: t is zero. All zeros if the image is not
+  // usable.
   const Camera& camera(int index) const { return cameras_[index]; }
+  // The same in a frame whose origin is the centre of camera `origin`, axes as
+  // in the model. A Camera is float32, and models lie millions of units from
+  // their origin (UTM, ECEF): so differences are formed in double before.
+  Camera CameraAround(int index, int origin) const;
+  // Of the camera, in the model's frame; not a number if it is not usable.
+  const Eigen::Vector3d& Center(int index) const { return centers_[index]; }
+  // z of a point of the model in the frame of the camera.
+  double Depth(int index, const Eigen::Vector3d& xyz) const;
+
+  // Of the image file; nothing if it is missing or no image.
+  const std::optional<ImageSize>& file_size(int index) const {
+    return file_sizes_[index];
+  }
+  // How the image file becomes the grey image of the camera's size.
+  ImageDecoding Decoding(int index) const;
+  // For all images of more than 8 bits (see deep_images.h).
+  void StretchDeepImages(const std::optional<GreyRange>& range) {
+    deep_range_ = range;
+  }
 
   const std::filesystem::path& ImagePath(int index) const {
     return image_paths_[index];
@@ -88,9 +111,12 @@ class Workspace {
   bool is_pmvs_ = false;
   SparseModel model_;
   std::vector<Camera> cameras_;
+  std::vector<Eigen::Vector3d> centers_;
   std::vector<bool> usable_;
   std::vector<std::filesystem::path> image_paths_;
   std::vector<bool> has_picture_;
+  std::vector<std::optional<ImageSize>> file_sizes_;
+  std::optional<GreyRange> deep_range_;
   std::unordered_map<std::string, int> index_of_name_;
 };
 

@@ -10,9 +10,16 @@ namespace hpm {
 
 class CancelToken {
  public:
+  CancelToken() = default;
+  // Also cancelled when `outer` is, which must outlive this token.
+  explicit CancelToken(const CancelToken* outer) : outer_(outer) {}
+
   // Async-signal-safe.
   void Cancel() { cancelled_.store(true, std::memory_order_relaxed); }
-  bool cancelled() const { return cancelled_.load(std::memory_order_relaxed); }
+  bool cancelled() const {
+    return cancelled_.load(std::memory_order_relaxed) ||
+           (outer_ != nullptr && outer_->cancelled());
+  }
 
   // Throws Error(kInterrupted) once Cancel() was called.
   void ThrowIfCancelled() const {
@@ -21,6 +28,7 @@ class CancelToken {
 
  private:
   std::atomic<bool> cancelled_{false};
+  const CancelToken* outer_ = nullptr;
 };
 
 }  // namespace hpm

@@ -173,10 +173,12 @@ HPM_HD void UpdatePixel(const VisitParams& params,
   Best best = {state.planes[at], 0, 0};
   if (candidates.current != 0) {
     const int same = LowestBit(candidates.current);
-    best.cost = WeightedMean(
-        weights, &candidates.matrix[same * candidates.num_views], true);
+    best.cost = WeightedMean(weights,
+                             &candidates.matrix[same * candidates.num_views],
+                             true,
+                             params.worst_cost);
   } else {
-    PhotometricCosts(cost, weights, &best.plane, 1, &best.cost);
+    PhotometricCosts(params, cost, weights, &best.plane, 1, &best.cost);
   }
   AddGeometricTerms(params, cost, weights, &best.plane, 1, &best.cost);
   best.bonus = bonus(-best.plane.distance / Dot(best.plane.normal, ray),
@@ -190,14 +192,17 @@ HPM_HD void UpdatePixel(const VisitParams& params,
   for (int i = 0; i < kNumRegions; ++i) {
     if (!((candidates.exists & ~candidates.current) >> i & 1)) continue;
     planes[num_planes] = candidates.plane[i];
-    costs[num_planes++] = WeightedMean(
-        weights, &candidates.matrix[i * candidates.num_views], true);
+    costs[num_planes++] =
+        WeightedMean(weights,
+                     &candidates.matrix[i * candidates.num_views],
+                     true,
+                     params.worst_cost);
   }
   const bool propagated = TakeBetter(
       params, cost, weights, bonus, ray, planes, num_planes, costs, &best);
 
   num_planes = RefinedPlanes(params, best.plane, prior, x, y, rng, planes);
-  PhotometricCosts(cost, weights, planes, num_planes, costs);
+  PhotometricCosts(params, cost, weights, planes, num_planes, costs);
   TakeBetter(
       params, cost, weights, bonus, ray, planes, num_planes, costs, &best);
 

@@ -32,6 +32,7 @@ struct VisitParams {
   float depth_perturbation;   // relative, 0.02
   float normal_perturbation;  // radians per axis, 0.01 pi
   float same_plane_bound;     // pixels; see NearlySame() in candidates.h
+  float worst_cost;           // see WeightedMean()
   // Pixels in a source view per unit of -1/z, largest of all views.
   float parallax;
   int patch_radius;  // pixels
@@ -49,14 +50,19 @@ struct VisitParams {
 // k of the best-k mean at initialisation (paper section 3).
 constexpr int kNumInitialViews = 4;
 
-// Photometric cost of a plane: mean over the drawn views, weighted.
-// costs[k] belongs to weights.view[k], or costs[view] to each view.
+// Mean over the drawn views, weighted; costs[k] belongs to weights.view[k], or
+// costs[view] to each view. No cost counts more than `worst`: a view that does
+// not see the plane at all, or shows the opposite of the reference, says no
+// more than one that shows something else. Else a surface that few views see
+// loses against a wrong one behind it that all do.
 HPM_HD float WeightedMean(const ViewWeights& weights,
                           const float* costs,
-                          bool indexed_by_view) {
+                          bool indexed_by_view,
+                          float worst) {
   float sum = 0;
   for (int k = 0; k < weights.num_views; ++k) {
-    sum += weights.weight[k] * costs[indexed_by_view ? weights.slot[k] : k];
+    const float cost = costs[indexed_by_view ? weights.slot[k] : k];
+    sum += weights.weight[k] * Smaller(cost, worst);
   }
   return sum / weights.weight_sum;
 }
@@ -64,7 +70,8 @@ HPM_HD float WeightedMean(const ViewWeights& weights,
 // Photometric costs of several planes; the batch goes through the backend at
 // once.
 template <class Cost>
-HPM_HD void PhotometricCosts(const Cost& cost,
+HPM_HD void PhotometricCosts(const VisitParams& params,
+                             const Cost& cost,
                              const ViewWeights& weights,
                              const Plane* planes,
                              int num_planes,
@@ -72,7 +79,8 @@ HPM_HD void PhotometricCosts(const Cost& cost,
   float costs[kNumRegions * kMaxViews];
   cost.Photometric(planes, num_planes, weights.view, weights.num_views, costs);
   for (int i = 0; i < num_planes; ++i) {
-    result[i] = WeightedMean(weights, &costs[i * weights.num_views], false);
+    result[i] = WeightedMean(
+        weights, &costs[i * weights.num_views], false, params.worst_cost);
   }
 }
 
@@ -91,7 +99,10 @@ HPM_HD void AddGeometricTerms(const VisitParams& params,
       planes, num_planes, weights.view, weights.num_views, errors);
   for (int i = 0; i < num_planes; ++i) {
     costs[i] += params.geometric_term.weight *
-                WeightedMean(weights, &errors[i * weights.num_views], false);
+                WeightedMean(weights,
+                             &errors[i * weights.num_views],
+                             false,
+                             params.geometric_term.max_error);
   }
 }
 

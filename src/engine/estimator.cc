@@ -7,6 +7,7 @@
 #include "src/prior/build_prior.h"
 #include "src/prior/weak_regions.h"
 
+#include <utility>
 #include <vector>
 
 namespace hpm {
@@ -111,10 +112,12 @@ void RunStage(Backend* backend,
     }
     if (pass.regions != RegionPriors::kNone) {
       PhaseTimer timer(times, "build prior");
-      map->priors =
+      MinedRegions mined =
           MineRegions(views, params, *map, pass.id, [&](HypothesisMap* scored) {
             score(StartFrom::kScore, scored);
           });
+      map->priors = std::move(mined.priors);
+      map->unexplained = std::move(mined.unexplained);
     }
     {
       PhaseTimer timer(times, PhaseName(pass.kind));
@@ -127,6 +130,7 @@ void RunStage(Backend* backend,
       FitLocalPlanes(views.ref.camera,
                      *views.ref.image,
                      kFitTolerance / Parallax(views),
+                     {views.depth_min, views.depth_max},
                      map);
     }
     map->priors = std::vector<Plane>();  // gives the memory back, {} would not

@@ -49,10 +49,12 @@ class Fitter {
   Fitter(const Camera& camera,
          const GrayImage& image,
          float tolerance,
+         const PriorRange& range,
          const HypothesisMap& map)
       : camera_(camera),
         image_(image),
         tolerance_(tolerance),
+        range_(range),
         inverse_depths_(map.planes.size()) {
     for (int row = 0; row < map.height; ++row) {
       for (int col = 0; col < map.width; ++col) {
@@ -91,7 +93,11 @@ class Fitter {
           plane.col_slope * (camera_.cx - static_cast<float>(col)) +
           plane.row_slope * (camera_.cy - static_cast<float>(row)))};
     const float norm = Norm(scaled);
-    if (!(plane.constant > 0) || !(norm > 0)) return own;
+    if (!(plane.constant * range_.depth_max >= 1 &&
+          plane.constant * range_.depth_min <= 1) ||
+        !(norm > 0)) {
+      return own;
+    }
     return {(1 / norm) * scaled, 1 / norm};
   }
 
@@ -148,6 +154,7 @@ class Fitter {
   const Camera& camera_;
   const GrayImage& image_;
   const float tolerance_;
+  const PriorRange range_;
   std::vector<float> inverse_depths_;  // 0: none
   std::array<float, 256> grey_weights_;
   std::array<float, 2 * kRadius * kRadius + 1> spatial_weights_;
@@ -158,8 +165,9 @@ class Fitter {
 void FitLocalPlanes(const Camera& camera,
                     const GrayImage& image,
                     float tolerance,
+                    const PriorRange& range,
                     HypothesisMap* map) {
-  const Fitter fitter(camera, image, tolerance, *map);
+  const Fitter fitter(camera, image, tolerance, range, *map);
   tbb::parallel_for(
       tbb::blocked_range<int>(0, map->height), [&](const auto& rows) {
         for (int row = rows.begin(); row < rows.end(); ++row) {

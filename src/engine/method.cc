@@ -33,6 +33,7 @@ Method Plus() {
   Departures departures;
   departures.cut_color = 15;
   departures.same_plane_bound = 0.2f;
+  departures.worst_cost = 1;
   departures.ask_all_views = false;
   departures.search_near = true;
   departures.geom_candidates = 4;
@@ -99,6 +100,7 @@ MethodParams DefaultParams(const Method& method) {
   MethodParams params;
   params.cut_color = method.departures.cut_color;
   params.same_plane_bound = method.departures.same_plane_bound;
+  params.worst_cost = method.departures.worst_cost;
   params.max_drawn_views = method.numbers.max_views;
   return params;
 }

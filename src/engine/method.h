@@ -34,9 +34,10 @@ struct MethodNumbers {
 };
 
 struct Departures {
-  float cut_color = 0;         // see ColorWeight(); 0: not cut
-  float same_plane_bound = 0;  // pixels, see NearlySame(); 0: not shared
-  bool ask_all_views = true;   // see ChooseViews()
+  float cut_color = 0;          // see ColorWeight(); 0: not cut
+  float same_plane_bound = 0;   // pixels, see NearlySame(); 0: not shared
+  float worst_cost = kMaxCost;  // see WeightedMean()
+  bool ask_all_views = true;    // see ChooseViews()
   // Geometric passes.
   bool search_near = false;           // no hypotheses from the whole range
   int geom_candidates = kNumRegions;  // regions that a visit looks into

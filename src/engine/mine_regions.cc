@@ -154,11 +154,11 @@ bool IsBelievable(const RegionPlane& plane, const PlaneEvidence& evidence) {
           (plane.inside >= kMostOfInside && plane.rim_behind < kMaxBehind));
 }
 
-std::vector<Plane> MineRegions(const ViewSet& views,
-                               const MethodParams& params,
-                               const HypothesisMap& map,
-                               uint64_t key,
-                               const ScoreHypotheses& score) {
+MinedRegions MineRegions(const ViewSet& views,
+                         const MethodParams& params,
+                         const HypothesisMap& map,
+                         uint64_t key,
+                         const ScoreHypotheses& score) {
   const std::vector<Witness> witnesses = WitnessesOf(views);
   if (witnesses.empty() || !(params.region_max_gradient > 0)) return {};
   const WeakRegions regions = FindWeakRegions(
@@ -185,7 +185,8 @@ std::vector<Plane> MineRegions(const ViewSet& views,
       step,
       params.region_max_residual / Parallax(views),
       CombineBits(views.random_key, key));
-  const auto evidence = FindEvidence(views, regions, planes, step, score);
+  const auto evidence =
+      FindEvidence(views, regions, planes, step, params.patch_radius, score);
   for (size_t label = 1; label < planes.of_region.size(); ++label) {
     std::vector<RegionPlane> believed;
     for (size_t k = 0; k < planes.of_region[label].size(); ++k) {
@@ -195,14 +196,18 @@ std::vector<Plane> MineRegions(const ViewSet& views,
     }
     planes.of_region[label] = std::move(believed);
   }
-  std::vector<Plane> result(map.planes.size(), Plane{{0, 0, 0}, 0});
+  MinedRegions result = {
+      std::vector<Plane>(map.planes.size(), Plane{{0, 0, 0}, 0}),
+      std::vector<bool>(map.planes.size(), false)};
   for (int row = 0; row < map.height; ++row) {
     for (int col = 0; col < map.width; ++col) {
       const int label = regions.At(col, row);
       if (label == 0) continue;
+      const size_t at = static_cast<size_t>(row) * map.width + col;
       const Plane* plane = NearestPlane(planes, label, views, col, row);
-      if (plane != nullptr)
-        result[static_cast<size_t>(row) * map.width + col] = *plane;
+      if (plane != nullptr) result.priors[at] = *plane;
+      result.unexplained[at] =
+          plane == nullptr && regions.Fills(col, row, kRimWidth);
     }
   }
   return result;

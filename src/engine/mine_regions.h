@@ -12,14 +12,21 @@
 
 namespace hpm {
 
-// One plane per pixel, distance 0 = none; empty where there is no such region
-// or no source has a depth map. `map` is the reference's. `key` identifies the
-// pass in the random numbers.
-std::vector<Plane> MineRegions(const ViewSet& views,
-                               const MethodParams& params,
-                               const HypothesisMap& map,
-                               uint64_t key,
-                               const ScoreHypotheses& score);
+// Both empty where there is no region without texture or no source has a depth
+// map.
+struct MinedRegions {
+  std::vector<Plane> priors;  // per pixel, distance 0: none
+  // Per pixel: inside a region without texture, farther than kRimWidth from
+  // anything else, and no believed plane explains it.
+  std::vector<bool> unexplained;
+};
+
+// `map` is the reference's. `key` identifies the pass in the random numbers.
+MinedRegions MineRegions(const ViewSet& views,
+                         const MethodParams& params,
+                         const HypothesisMap& map,
+                         uint64_t key,
+                         const ScoreHypotheses& score);
 
 // Whether a candidate may lead its region. Either the images match better on it
 // than beside it; or they do not contradict it and its points say so: they are

@@ -19,8 +19,9 @@ struct MethodParams {
   float normal_perturbation = 0.0314159f;  // radians per axis
   float same_plane_bound =
       0;  // pixels; planes closer than this share their costs
-  float geom_weight = 0.1f;  // cost per pixel of reprojection error
-  float geom_max_error = 5;  // pixels
+  float worst_cost = kMaxCost;  // of a view, see WeightedMean()
+  float geom_weight = 0.1f;     // cost per pixel of reprojection error
+  float geom_max_error = 5;     // pixels
   float prior_gamma = 0.5f;
   float prior_beta = 0.18f;
   float prior_depth_share =

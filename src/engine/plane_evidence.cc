@@ -3,11 +3,14 @@
 #include "src/engine/visit_params.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace hpm {
 namespace {
 
 constexpr float kShift = 2;  // pixels in the median view
+// Pixels of the lattice, so that a region has enough of itself to show.
+constexpr int kMinInner = 50;
 
 // Pixels per unit of -1/z; half the views that see depth at all have more. 0
 // if none does: all look from where the reference does.
@@ -41,6 +44,30 @@ bool IsNearestOfItsKind(const std::vector<RegionPlane>& list,
   return true;
 }
 
+// The pixels of the lattice, by region, that can witness. A window that reaches
+// over the rim matches what lies there, at the depth of that, and would find
+// any sky at the depth of the roofs below it; so only pixels count whose region
+// fills the window, or all of a region too narrow to have such.
+std::vector<std::vector<size_t>> WitnessesOf(const WeakRegions& regions,
+                                             int lattice_step,
+                                             int patch_radius) {
+  std::vector<std::vector<size_t>> all(regions.num_regions + 1);
+  std::vector<std::vector<size_t>> inner(all.size());
+  for (int row = 0; row < regions.height; row += lattice_step) {
+    for (int col = 0; col < regions.width; col += lattice_step) {
+      const int label = regions.At(col, row);
+      if (label == 0) continue;
+      const size_t at = static_cast<size_t>(row) * regions.width + col;
+      all[label].push_back(at);
+      if (regions.Fills(col, row, patch_radius)) inner[label].push_back(at);
+    }
+  }
+  for (size_t label = 0; label < all.size(); ++label) {
+    if (inner[label].size() < kMinInner) inner[label] = std::move(all[label]);
+  }
+  return inner;
+}
+
 struct Sums {
   double at = 0, nearer = 0, farther = 0;
   int count = 0;
@@ -53,6 +80,7 @@ std::vector<std::vector<PlaneEvidence>> FindEvidence(
     const WeakRegions& regions,
     const RegionPlanes& candidates,
     int lattice_step,
+    int patch_radius,
     const ScoreHypotheses& score) {
   const auto& of_region = candidates.of_region;
   std::vector<std::vector<PlaneEvidence>> result(of_region.size());
@@ -64,20 +92,20 @@ std::vector<std::vector<PlaneEvidence>> FindEvidence(
   const float parallax = MedianParallax(views);
   if (!(parallax > 0)) return result;
   const float shift = kShift / parallax;
+  const auto witnesses = WitnessesOf(regions, lattice_step, patch_radius);
   HypothesisMap map(regions.width, regions.height);
   // The k-th candidates of all regions together.
   for (size_t k = 0; k < most; ++k) {
     std::vector<size_t> pixels;
-    std::vector<int> labels;
-    for (int row = 0; row < regions.height; row += lattice_step) {
-      for (int col = 0; col < regions.width; col += lattice_step) {
-        const int label = regions.At(col, row);
-        if (k >= of_region[label].size() ||
-            !IsNearestOfItsKind(
-                of_region[label], k, candidates.CellAt(col, row))) {
-          continue;
-        }
-        pixels.push_back(static_cast<size_t>(row) * regions.width + col);
+    std::vector<size_t> labels;
+    for (size_t label = 1; label < of_region.size(); ++label) {
+      if (k >= of_region[label].size()) continue;
+      for (const size_t at : witnesses[label]) {
+        const size_t cell =
+            candidates.CellAt(static_cast<int>(at % regions.width),
+                              static_cast<int>(at / regions.width));
+        if (!IsNearestOfItsKind(of_region[label], k, cell)) continue;
+        pixels.push_back(at);
         labels.push_back(label);
       }
     }

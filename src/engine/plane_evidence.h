@@ -22,13 +22,15 @@ struct PlaneEvidence {
   double distinctness = 0;
 };
 
-// As `candidates.of_region`. Looks at every `lattice_step`-th pixel of a
-// region, each under the nearest candidate of its inside and of its rim.
+// As `candidates.of_region`. Looks at every `lattice_step`-th pixel of a region
+// whose window of `patch_radius` the region fills, each under the nearest
+// candidate of its inside and of its rim.
 std::vector<std::vector<PlaneEvidence>> FindEvidence(
     const ViewSet& views,
     const WeakRegions& regions,
     const RegionPlanes& candidates,
     int lattice_step,
+    int patch_radius,
     const ScoreHypotheses& score);
 
 }  // namespace hpm

@@ -28,6 +28,7 @@ VisitParams MakeVisitParams(const ViewSet& views, const MethodParams& params) {
   visit.depth_perturbation = params.depth_perturbation;
   visit.normal_perturbation = params.normal_perturbation;
   visit.same_plane_bound = params.same_plane_bound;
+  visit.worst_cost = params.worst_cost;
   visit.parallax = Parallax(views);
   visit.patch_radius = params.patch_radius;
   visit.geometric_term = {params.geom_weight, params.geom_max_error};

@@ -20,6 +20,11 @@ struct HypothesisMap {
   std::vector<Plane>
       priors;  // empty: no priors; distance 0: none at this pixel
 
+  // Set by passes with priors of regions, else empty; see MinedRegions. Such a
+  // pixel has whatever plane matched best by chance, and all views may share
+  // it, so that COLMAP's filter cannot tell.
+  std::vector<bool> unexplained;
+
   // Halvings of the grid of `priors`; above 0 only for backends that upsample.
   int prior_level = 0;
 

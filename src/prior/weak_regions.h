@@ -20,6 +20,22 @@ struct WeakRegions {
     return label[static_cast<size_t>(row) * width + col];
   }
 
+  // Whether the pixel's region fills the window of `radius` around it, as far
+  // as that lies in the image.
+  bool Fills(int col, int row, int radius) const {
+    const int own = At(col, row);
+    for (int r = std::max(0, row - radius);
+         r <= std::min(height - 1, row + radius);
+         ++r) {
+      for (int c = std::max(0, col - radius);
+           c <= std::min(width - 1, col + radius);
+           ++c) {
+        if (At(c, r) != own) return false;
+      }
+    }
+    return true;
+  }
+
   // Calls visit(label) for the weak pixels at most `radius` away.
   template <class Visit>
   void ForEachNear(int col, int row, int radius, const Visit& visit) const {

@@ -70,6 +70,8 @@ class Acceptance(CliTest):
         self.assert_exit(result, 0)
         self.assert_complete(workspace, stages=["photometric"])
         self.assertFalse([name for name in map_files(workspace) if "geometric" in name])
+        self.assertEqual(result.stderr.count("geom_consistency 0"), 1)
+        self.assertIn("get no priors", result.stderr)
 
     def test_consistency_graphs_are_whole_and_name_other_images(self):
         workspace = self.workspace()

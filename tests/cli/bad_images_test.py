@@ -1,4 +1,6 @@
-"""Images that are missing, damaged, huge, tiny or without any contrast."""
+"""Images that are missing, damaged, huge, tiny or without any contrast; few of them, and a filter
+that leaves none of their pixels."""
+import json
 import resource
 import unittest
 
@@ -133,7 +135,7 @@ class BadImages(CliTest):
 
 
 class FewImages(CliTest):
-    def test_an_image_without_sources_is_skipped_with_a_warning(self):
+    def test_a_single_image_is_exit_3_and_says_why(self):
         workspace = self.workspace(views=1)
         for sources in ("__auto__, 20", "__all__"):
             (workspace / "stereo/patch-match.cfg").write_text(f"view00.png\n{sources}\n")
@@ -143,8 +145,8 @@ class FewImages(CliTest):
                 "--PatchMatchStereo.depth_min=1",
                 "--PatchMatchStereo.depth_max=10",
             )
-            self.assert_exit(result, 0)
-            self.assertIn("view00.png", result.stderr)
+            self.assert_exit(result, 3, "patch-match.cfg", "source images")
+            self.assertIn("view00.png, because it has no source images", result.stderr)
             self.assertEqual(map_files(workspace), {})
 
     def test_one_source_is_enough(self):
@@ -153,6 +155,53 @@ class FewImages(CliTest):
         self.assert_complete(workspace)
         values = read_map(workspace / "stereo/depth_maps/view00.png.geometric.bin")[3]
         self.assertGreater(sum(v > 0 for v in values), len(values) / 4)
+
+    def test_the_option_that_fusion_of_few_images_needs_is_told(self):
+        for views, option in ((2, "--StereoFusion.min_num_pixels 2\n"), (6, None)):
+            with self.subTest(views):
+                result = self.run_tool(self.workspace(views=views, width=48, height=36), *FAST)
+                self.assert_exit(result, 0)
+                if option:
+                    self.assertIn(option, result.stdout)
+                else:
+                    self.assertNotIn("min_num_pixels", result.stdout)
+
+    def test_a_few_references_bring_their_sources_along(self):
+        workspace = self.workspace()
+        (workspace / "stereo/patch-match.cfg").write_text("view01.png\n__auto__, 20\n")
+        result = self.run_tool(workspace, *FAST)
+        self.assert_exit(result, 0)
+        self.assertIn("Configuration has 1 problems...", result.stdout)
+        self.assertIn("3 further images are estimated", result.stdout)
+        self.assertIn("1 images: 1 computed", result.stdout)
+        self.assert_complete(workspace, ["view01.png"])
+        self.assertTrue(all("view01" in name for name in map_files(workspace)))
+        record = json.loads((workspace / "stereo/hpm_mvs/run.json").read_text())
+        self.assertEqual((record["images_computed"], record["sources_computed"]), (1, 3))
+
+
+class Filter(CliTest):
+    def test_a_filter_that_takes_everything_names_its_option_once(self):
+        for option, criterion in (
+            ("filter_min_triangulation_angle=80", "angle"),
+            ("filter_min_ncc=1", "correlation"),
+            ("filter_geom_consistency_max_cost=0", "geometry"),
+            ("filter_min_num_consistent=3", None),
+        ):
+            with self.subTest(option):
+                workspace = self.workspace(width=64, height=48)
+                result = self.run_tool(workspace, *FAST, f"--PatchMatchStereo.{option}")
+                self.assert_exit(result, 0)
+                record = json.loads((workspace / "stereo/hpm_mvs/run.json").read_text())
+                if criterion is None:
+                    self.assertNotIn("--PatchMatchStereo.filter", result.stderr)
+                    continue
+                self.assertEqual(result.stderr.count(option.split("=")[0]), 1, result.stderr)
+                self.assertIn("4 of 4 images", result.stderr)
+                self.assertIn("Pixels dropped by: ", result.stdout)
+                self.assertGreater(record["filter_losses"][criterion], 0.8)
+                for image in record["images"].values():
+                    self.assertGreater(image["geometric"]["filter_losses"][criterion], 0.8)
 
 
 if __name__ == "__main__":

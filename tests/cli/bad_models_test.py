@@ -3,7 +3,7 @@ import struct
 import unittest
 
 import sparse_patch
-from support import FAST, CliTest, map_files
+from support import FAST, CliTest, map_files, read_map
 
 HUGE = struct.pack("<Q", 2**64 - 1)
 
@@ -119,19 +119,94 @@ class Poses(CliTest):
         self.assert_rerun_completes(workspace)
 
 
-class DepthRange(CliTest):
-    def test_without_points_and_range_it_is_exit_3_and_says_what_to_give(self):
+class WithoutTracks(CliTest):
+    """Models of feed-forward networks and converters: points without tracks, or no points."""
+
+    def depths(self, workspace, name="view02.png"):
+        return read_map(workspace / f"stereo/depth_maps/{name}.geometric.bin")[3]
+
+    def valid(self, workspace, name="view02.png"):
+        return sum(depth > 0 for depth in self.depths(workspace, name))
+
+    def assert_as_good_as_with_tracks(self, workspace, plain, share=0.8, name="view02.png"):
+        same = sum(
+            a > 0 and b > 0 and abs(a - b) < 0.02 * b
+            for a, b in zip(self.depths(workspace, name), self.depths(plain, name))
+        )
+        self.assertGreater(same, share * self.valid(plain, name))
+
+    def run_plain(self):
+        plain = self.workspace()
+        self.assert_rerun_completes(plain)
+        return plain
+
+    def test_without_tracks_all_is_computed_and_fusion_is_warned_of_once(self):
+        plain = self.run_plain()
+        for cfg in ("__auto__, 20", "__all__"):
+            for keep_points in (True, False):
+                with self.subTest(cfg=cfg, points=keep_points):
+                    workspace = self.workspace()
+                    if keep_points:
+                        sparse_patch.thin_tracks(workspace / "sparse", lambda point, image: False)
+                    else:
+                        sparse_patch.remove_points(workspace / "sparse")
+                    (workspace / "stereo/patch-match.cfg").write_text(
+                        "".join(f"view0{i}.png\n{cfg}\n" for i in range(4))
+                    )
+                    result = self.run_tool(workspace, *FAST)
+                    self.assert_exit(result, 0)
+                    self.assert_complete(workspace)
+                    warnings = [l for l in result.stderr.splitlines() if "stereo_fusion" in l]
+                    self.assertEqual(len(warnings), 1, result.stderr)
+                    self.assertIn("point_triangulator", warnings[0])
+                    self.assertIn("4 reference images", warnings[0])
+                    # From poses alone the range is wide, and FAST searches little.
+                    share = 0.8 if keep_points else 0.6
+                    self.assert_as_good_as_with_tracks(workspace, plain, share)
+
+    def test_an_image_of_few_tracks_stops_nobody_and_suffers_little(self):
+        plain = self.run_plain()
+        for num_points in (0, 2):
+            for cfg in ("__auto__, 20", "__all__"):
+                with self.subTest(points=num_points, cfg=cfg):
+                    workspace = self.workspace()
+                    left = []
+
+                    def keep(point, image):
+                        if image != 3:
+                            return True
+                        left.append(point)
+                        return len(left) <= num_points
+
+                    sparse_patch.thin_tracks(workspace / "sparse", keep)
+                    (workspace / "stereo/patch-match.cfg").write_text(
+                        "".join(f"view0{i}.png\n{cfg}\n" for i in range(4))
+                    )
+                    result = self.run_tool(workspace, *FAST)
+                    self.assert_exit(result, 0)
+                    self.assert_complete(workspace)
+                    self.assertEqual(result.stderr.count("view02.png"), 1 + (num_points == 0))
+                    self.assert_as_good_as_with_tracks(workspace, plain)
+
+    def test_with_a_range_given_nothing_is_estimated(self):
         workspace = self.workspace()
         sparse_patch.remove_points(workspace / "sparse")
+        result = self.assert_rerun_completes(
+            workspace, *FAST, "--PatchMatchStereo.depth_min=3", "--PatchMatchStereo.depth_max=8"
+        )
+        self.assertNotIn("estimated", result.stderr)
+
+    def test_where_nothing_tells_the_range_it_is_exit_3_and_says_what_to_give(self):
+        workspace = self.workspace()
+        sparse_patch.remove_points(workspace / "sparse")
+        for image in range(1, 4):
+            sparse_patch.copy_pose(workspace / "sparse/images.bin", 0, image)
         (workspace / "stereo/patch-match.cfg").write_text(
             "".join(f"view0{i}.png\n__all__\n" for i in range(4))
         )
         result = self.run_tool(workspace, *FAST)
         self.assert_exit(result, 3, "depth_min", "depth_max")
         self.assert_no_partial_files(workspace)
-        self.assert_rerun_completes(
-            workspace, *FAST, "--PatchMatchStereo.depth_min=3", "--PatchMatchStereo.depth_max=8"
-        )
 
 
 class Configuration(CliTest):
@@ -171,10 +246,10 @@ class Configuration(CliTest):
                 self.assertEqual(len(map_files(self.dense)), 4)
                 self.assert_complete(self.dense, ["view00.png"])
 
-    def test_no_image_is_enough_for_nothing(self):
+    def test_nothing_to_do_is_exit_3_and_says_what_to_write(self):
         for text in ("", "view00.png\n__auto__, 0\n"):
             with self.subTest(text):
-                self.assert_exit(self.run_with(text), 0)
+                self.assert_exit(self.run_with(text), 3, "patch-match.cfg", "; ")
                 self.assertEqual(map_files(self.dense), {})
 
     def test_a_missing_configuration_is_exit_3(self):

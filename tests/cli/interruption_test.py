@@ -44,6 +44,37 @@ class Locking(CliTest):
         first.wait()
         self.assert_rerun_completes(workspace)
 
+    def test_the_lock_of_a_killed_container_is_taken_over(self):
+        workspace = self.workspace()
+        container = ["unshare", "--uts", "--pid", "--fork", "--mount-proc", "sh", "-c"]
+        command = self.command(workspace, *SLOW)
+        try:
+            subprocess.run([*container, "hostname box-a1"], check=True, stderr=subprocess.PIPE)
+        except (OSError, subprocess.CalledProcessError):
+            self.skipTest("a name space cannot be made here")
+        script = '"$@" > /dev/null 2>&1 & sleep 1; kill -9 $!; wait'
+        subprocess.run([*container, "hostname box-a1; " + script, "sh", *command])
+        self.assertIn("box-a1", (workspace / "stereo/hpm_mvs/lock").read_text())
+        result = self.assert_rerun_completes(workspace)
+        self.assertIn("box-a1", result.stdout)
+
+    def test_a_stopped_run_that_wakes_without_its_lock_ends_with_7(self):
+        workspace = self.workspace()
+        process = self.start_tool(workspace, *SLOW)
+        process.send_signal(signal.SIGSTOP)
+        lock = workspace / "stereo/hpm_mvs/lock"
+        taken = lock.read_text().replace('"token":"', '"token":"another')
+        lock.unlink()
+        lock.write_text(taken)
+        before = {path: path.read_bytes() for path in workspace.rglob("*.bin")}
+        process.send_signal(signal.SIGCONT)
+        self.assertEqual(process.wait(timeout=20), 7)
+        self.assertIn(str(lock), (workspace / "log.txt").read_text())
+        self.assertEqual(lock.read_text(), taken)
+        self.assertEqual({path: path.read_bytes() for path in workspace.rglob("*.bin")}, before)
+        lock.unlink()
+        self.assert_rerun_completes(workspace)
+
 
 class Resources(CliTest):
     def test_a_file_size_limit_is_exit_5_and_leaves_nothing_partial(self):

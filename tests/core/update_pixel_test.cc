@@ -40,6 +40,7 @@ class UpdatePixelTest : public testing::Test {
     params_.max_candidates = kNumRegions;
     params_.depth_perturbation = 0.02f;
     params_.normal_perturbation = 0.0314f;
+    params_.worst_cost = kMaxCost;
     params_.geometric_term = {0.1f, 5};
     params_.prior_term = {0.5f, 0.18f, 4.0f / 64, 0.087f};
   }
@@ -173,6 +174,28 @@ TEST_F(UpdatePixelTest, PixelThatNoViewSeesStaysFinite) {
     EXPECT_EQ(CostHere(), kMaxCost);
     EXPECT_EQ(Here().distance, 3);
   }
+}
+
+// Two of three views look past a near surface; a far one, wrong, is in the
+// frame of all and resembles what they show a little.
+TEST_F(UpdatePixelTest, ViewsThatDoNotSeeASurfaceDoNotSpeakAgainstIt) {
+  const Plane near = {{0, 0, -1}, 2.5f};
+  const FakeCost seen_by_one = {[&](const Plane& plane, int view) {
+    if (plane.distance != near.distance) return 0.8f;
+    return view == 0 ? 0.2f : kMaxCost;
+  }};
+  SetAt(9, 0, near, 0.2f);
+  int taken[2] = {};
+  for (const bool capped : {false, true}) {
+    params_.worst_cost = capped ? 1 : kMaxCost;
+    for (uint64_t key = 0; key < 20; ++key) {
+      Here() = {{0, 0, -1}, 3};
+      Visit(seen_by_one, key);
+      taken[capped] += Here().distance == near.distance;
+    }
+  }
+  EXPECT_EQ(taken[0], 0);
+  EXPECT_EQ(taken[1], 20);
 }
 
 // Specification 13, number 5: the public code replaces a good plane at every

@@ -38,7 +38,7 @@ class LocalPlanesTest : public testing::Test {
     map_.planes[row * kWidth + col] =
         PlaneFromDepth(camera_, x, y, 1 / inverse_depth, normal);
   }
-  void Fit() { FitLocalPlanes(camera_, image_, kTolerance, &map_); }
+  void Fit() { FitLocalPlanes(camera_, image_, kTolerance, range_, &map_); }
 
   // Mean angle to `truth` in degrees and mean error of 1/z over columns
   // [left, right).
@@ -62,6 +62,7 @@ class LocalPlanesTest : public testing::Test {
 
   Camera camera_;
   GrayImage image_;
+  PriorRange range_ = {0.1f, 100};
   HypothesisMap map_;
 };
 
@@ -102,6 +103,26 @@ TEST_F(LocalPlanesTest, GapsStayGaps) {
   EXPECT_EQ(map_.planes[0].distance, 0);
   EXPECT_EQ(map_.planes[kWidth + 7].distance, 0);
   EXPECT_GT(map_.planes[1].distance, 0);
+}
+
+// All pixels lie near the end of the range; a fit would move half of them out.
+TEST_F(LocalPlanesTest, NoFitLeavesTheRange) {
+  for (int row = 0; row < kHeight; ++row) {
+    for (int col = 0; col < kWidth; ++col) {
+      const auto x = static_cast<float>(col), y = static_cast<float>(row);
+      map_.planes[row * kWidth + col] = PlaneFromDepth(
+          camera_, x, y, (row + col) % 2 == 0 ? 3.0f : 3.01f, {0, 0, -1});
+    }
+  }
+  range_ = {3.01f, 100};
+  Fit();
+  for (int row = 0; row < kHeight; ++row) {
+    for (int col = (row + 1) % 2; col < kWidth; col += 2) {
+      const auto x = static_cast<float>(col), y = static_cast<float>(row);
+      EXPECT_GT(DepthAt(camera_, map_.planes[row * kWidth + col], x, y),
+                3.0099f);
+    }
+  }
 }
 
 TEST_F(LocalPlanesTest, ALonelyPixelKeepsItsPlane) {

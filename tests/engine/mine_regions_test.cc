@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace hpm {
@@ -56,6 +57,10 @@ class MineRegionsTest : public testing::Test {
     for (size_t at = 0; at < map->planes.size(); ++at) {
       if (map->planes[at].distance == 0) continue;
       scored_.push_back(map->planes[at]);
+      if (static_cast<int>(at / kWidth) < first_sighted_row_) {
+        map->costs[at] = 0.5f;
+        continue;
+      }
       const float z = DepthAt(views_.ref.camera,
                               map->planes[at],
                               static_cast<float>(at % kWidth),
@@ -65,7 +70,8 @@ class MineRegionsTest : public testing::Test {
           slope_ * std::abs(1 / z - 1 / (matching_scale_ * TrueDepth(at)));
     }
   }
-  std::vector<Plane> Mine() {
+  std::vector<Plane> Mine() { return MineAll().priors; }
+  MinedRegions MineAll() {
     return MineRegions(
         views_, params_, map_, 7, [this](HypothesisMap* map) { Score(map); });
   }
@@ -93,6 +99,7 @@ class MineRegionsTest : public testing::Test {
   MethodParams params_;
   std::vector<Plane> scored_;
   float slope_ = 0;  // the images say nothing
+  int first_sighted_row_ = 0;
   float matching_scale_ = 1;
 };
 
@@ -128,6 +135,30 @@ TEST_F(MineRegionsTest, ViewsThatDisagreeHaveNoSay) {
   const std::vector<Plane> priors = Mine();
   ASSERT_EQ(priors.size(), map_.planes.size());
   for (const Plane& prior : priors) EXPECT_EQ(prior.distance, 0);
+}
+
+TEST_F(MineRegionsTest, WhatNoBelievedPlaneExplainsIsMarked) {
+  EXPECT_THAT(MineAll().unexplained, testing::Each(false));
+  slope_ = 10;
+  matching_scale_ = 0.8f;
+  EXPECT_THAT(MineAll().unexplained, testing::Each(true));
+}
+
+// A roof below a sky: windows at the rim match best at the depth of the roof,
+// those of the sky itself match anywhere.
+TEST_F(MineRegionsTest, WindowsThatReachOverTheRimAreNoEvidence) {
+  constexpr int kSkyline = kHeight / 2;
+  GrayImage image = *views_.ref.image;
+  for (int row = kSkyline; row < kHeight; ++row) {
+    for (int col = 0; col < kWidth; ++col)
+      image.data[row * kWidth + col] = (col / 3 + row / 3) % 2 == 0 ? 30 : 220;
+  }
+  views_.ref.image = std::make_shared<const GrayImage>(image);
+  slope_ = 200;
+  first_sighted_row_ = kSkyline - params_.patch_radius;
+  for (int at = 0; at < first_sighted_row_ * kWidth; ++at)
+    map_.planes[at].distance *= 1.3f;  // nothing agrees in the sky
+  for (const Plane& prior : Mine()) EXPECT_EQ(prior.distance, 0);
 }
 
 // All depth maps agree on a plane, but the images match better beside it.

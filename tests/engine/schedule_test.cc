@@ -109,6 +109,7 @@ TEST_P(EveryMethod, OnlyOursDepartsFromThePaper) {
   const bool ours = std::string(method.name) == "hpm_plus";
   EXPECT_EQ(DefaultParams(method).cut_color > 0, ours);
   EXPECT_EQ(DefaultParams(method).same_plane_bound > 0, ours);
+  EXPECT_EQ(DefaultParams(method).worst_cost < kMaxCost, ours);
   EXPECT_EQ(DefaultParams(method).max_drawn_views < kMaxViews, ours);
   for (const StageSpec& stage : MakeSchedule(Options(GetParam())).stages) {
     for (const Pass& pass : stage.passes) {

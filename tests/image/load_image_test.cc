@@ -85,6 +85,96 @@ TEST_F(LoadImage, SixteenBitsAreReducedToEight) {
   EXPECT_EQ(LoadGrayImage(Write("deep.png", image), 4, 4).at(1, 3), 200);
 }
 
+TEST_F(LoadImage, ARangeIsStretchedToAllGreyLevels) {
+  cv::Mat image(1, 6, CV_16UC1);
+  const uint16_t values[] = {0, 6900, 7000, 7508, 8016, 9000};
+  std::copy(std::begin(values), std::end(values), image.ptr<uint16_t>());
+  ImageDecoding decoding;
+  decoding.stretch = GreyRange{7000, 8016};
+  const GrayImage gray =
+      LoadGrayImage(Write("thermal.tif", image), 6, 1, decoding);
+  EXPECT_THAT(gray.data, testing::ElementsAre(0, 1, 1, 128, 255, 255));
+}
+
+TEST_F(LoadImage, FloatingPointHasTheSameWeightsAndItsHolesAreBlack) {
+  cv::Mat image(1, 3, CV_32FC3);
+  image.at<cv::Vec3f>(0, 0) = {1, 0, 0};
+  image.at<cv::Vec3f>(0, 1) = {0, 0, 1};
+  image.at<cv::Vec3f>(0, 2) = cv::Vec3f::all(std::nanf(""));
+  ImageDecoding decoding;
+  decoding.stretch = GreyRange{-1, 1};
+  const GrayImage gray =
+      LoadGrayImage(Write("float.tif", image), 3, 1, decoding);
+  EXPECT_THAT(
+      gray.data,
+      testing::ElementsAre(
+          std::lround(1 + 127 * 1.0722), std::lround(1 + 127 * 1.2126), 0));
+}
+
+TEST_F(LoadImage, MeasuringLeavesOutWhatHasNoValueAndAThousandth) {
+  cv::Mat image(100, 100, CV_16UC1);
+  for (int i = 0; i < 10000; ++i)
+    image.ptr<uint16_t>()[i] =
+        i < 3000 ? 0 : static_cast<uint16_t>(7000 + i % 1000);
+  image.ptr<uint16_t>()[5000] = 65535;
+  image.ptr<uint16_t>()[6000] = 1;
+  const auto range = MeasureGreyRange(Write("thermal.png", image));
+  ASSERT_TRUE(range);
+  EXPECT_NEAR(range->low, 7000, 3);
+  EXPECT_NEAR(range->high, 7999, 3);
+  EXPECT_FALSE(MeasureGreyRange(folder_ / "absent.png"));
+  EXPECT_FALSE(
+      MeasureGreyRange(Write("black.png", cv::Mat::zeros(9, 9, CV_16UC1))));
+}
+
+// A smooth picture, so that what is left is where its parts lie.
+TEST_F(LoadImage, ReducedDecodingKeepsEverythingInPlace) {
+  for (const auto& [width, height] :
+       {std::pair(805, 603), std::pair(801, 600), std::pair(808, 607)}) {
+    cv::Mat image(height, width, CV_8UC3);
+    for (int row = 0; row < height; ++row) {
+      for (int col = 0; col < width; ++col) {
+        const double wave = 127 + 60 * std::sin(0.05 * col + 0.02 * row) +
+                            60 * std::cos(0.04 * row - 0.01 * col);
+        image.at<cv::Vec3b>(row, col) =
+            cv::Vec3b::all(static_cast<uint8_t>(wave));
+      }
+    }
+    const auto path = folder_ / "wave.jpg";
+    cv::imwrite(path.string(), image, {cv::IMWRITE_JPEG_QUALITY, 98});
+    for (const int small_width : {400, 200, 97, 50, 25}) {
+      const int small_height = small_width * 3 / 4;
+      const GrayImage full = LoadGrayImage(path, small_width, small_height);
+      ImageDecoding decoding;
+      decoding.reduction =
+          ReductionFor(width, height, small_width, small_height);
+      EXPECT_GT(decoding.reduction, 1);
+      decoding.file_width = width;
+      decoding.file_height = height;
+      const GrayImage reduced =
+          LoadGrayImage(path, small_width, small_height, decoding);
+      ASSERT_EQ(reduced.data.size(), full.data.size());
+      double sum = 0;
+      for (size_t i = 0; i < full.data.size(); ++i) {
+        EXPECT_NEAR(reduced.data[i], full.data[i], 3);
+        sum += std::abs(reduced.data[i] - full.data[i]);
+      }
+      EXPECT_LT(sum / static_cast<double>(full.data.size()), 0.5);
+    }
+  }
+}
+
+TEST_F(LoadImage, TheReductionLeavesEnoughPixels) {
+  EXPECT_EQ(ReductionFor(800, 600, 800, 600), 1);
+  EXPECT_EQ(ReductionFor(799, 600, 400, 300), 1);
+  EXPECT_EQ(ReductionFor(800, 600, 400, 300), 2);
+  EXPECT_EQ(ReductionFor(800, 600, 400, 301), 1);
+  EXPECT_EQ(ReductionFor(800, 600, 51, 37), 2);
+  EXPECT_EQ(ReductionFor(800, 600, 50, 37), 4);
+  EXPECT_EQ(ReductionFor(8000, 6000, 400, 300), 4);
+  EXPECT_EQ(ReductionFor(8000, 6000, 200, 150), 8);
+}
+
 TEST_F(LoadImage, ShrinkingAveragesAreas) {
   cv::Mat image(4, 6, CV_8U);
   for (int i = 0; i < 24; ++i) image.data[i] = static_cast<uint8_t>(10 * i);
@@ -102,6 +192,16 @@ TEST_F(LoadImage, ShrinkingAveragesAreas) {
 
 TEST_F(LoadImage, MissingFileIsBadInput) {
   ExpectBadInput(folder_ / "absent.png");
+}
+
+TEST_F(LoadImage, AKindThatCannotBeDecodedIsSaidToBeConverted) {
+  WriteFile(folder_ / "a.xyz", "GIF89z not of any kind");
+  try {
+    LoadGrayImage(folder_ / "a.xyz", 8, 8);
+    ADD_FAILURE() << "no error";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("convert"));
+  }
 }
 
 TEST_F(LoadImage, FolderIsBadInput) { ExpectBadInput(folder_.path()); }

@@ -37,6 +37,15 @@ TEST(FindWeakRegions, AnEdgeSeparatesAndTextureBelongsToNone) {
   EXPECT_EQ(LabelAt(regions, 60, 45), 0);
 }
 
+TEST(FindWeakRegions, FillsWindowsUpToItsRim) {
+  const WeakRegions regions = FindWeakRegions(TwoHalves(), 2, 0.01f);
+  int last = 59;  // of the left half, in this row
+  while (LabelAt(regions, last, 70) == 0) --last;
+  EXPECT_TRUE(regions.Fills(last - 5, 70, 5));
+  EXPECT_FALSE(regions.Fills(last - 4, 70, 5));
+  EXPECT_TRUE(regions.Fills(0, kHeight - 1, 5));  // the image's border is none
+}
+
 TEST(FindWeakRegions, ShadingUpToTheBoundIsWeak) {
   GrayImage ramp = {kWidth, kHeight, std::vector<uint8_t>(kWidth * kHeight)};
   for (int i = 0; i < kWidth * kHeight; ++i)

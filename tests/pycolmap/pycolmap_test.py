@@ -1,6 +1,7 @@
 """The newest COLMAP takes our maps: pycolmap reads the workspace, fuses and meshes it."""
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -13,7 +14,8 @@ except ImportError as error:
     print(f"skipped: {error}; run scripts/install_pycolmap.sh")
     sys.exit(77)
 
-from support import HPM_MAKE_SCENE, HPM_MVS
+import sparse_patch
+from support import FAST, HPM_MAKE_SCENE, HPM_MVS
 
 README = pathlib.Path(__file__).resolve().parents[2] / "README.md"
 
@@ -121,6 +123,83 @@ class PycolmapTest(unittest.TestCase):
         vertices, faces = read_ply(mesh)
         self.assertGreater(faces, 100)
         self.assertLess(np.median(np.abs(positions(vertices) @ NORMAL)), 0.02)
+
+
+def write_as_rig(sparse, binary):
+    """All cameras of the model become one rig, their images its one frame; the poses in the
+    images file become stale. pycolmap writes the rig, and still knows the poses."""
+    model = pycolmap.Reconstruction(sparse)
+    kind = pycolmap.SensorType.CAMERA
+    images = [model.images[i] for i in sorted(model.images)]
+    poses = {image.name: image.cam_from_world() for image in images}
+    rig_from_world = poses[images[0].name]
+    rig, frame = pycolmap.Rig(rig_id=1), pycolmap.Frame(frame_id=1, rig_id=1)
+    for image in images:
+        sensor = pycolmap.sensor_t(kind, image.camera_id)
+        frame.add_data_id(pycolmap.data_t(sensor, image.image_id))
+        if image is images[0]:
+            rig.add_ref_sensor(sensor)
+        else:
+            rig.add_sensor(sensor, poses[image.name] * rig_from_world.inverse())
+    frame.rig_from_world = rig_from_world
+    rigged = pycolmap.Reconstruction()
+    for camera in model.cameras.values():
+        rigged.add_camera(camera)
+    rigged.add_rig(rig)
+    rigged.add_frame(frame)
+    for image in images:
+        rigged.add_image(pycolmap.Image(
+            name=image.name, camera_id=image.camera_id, image_id=image.image_id, frame_id=1,
+            points2D=pycolmap.Point2DList([pycolmap.Point2D(p.xy) for p in image.points2D]),
+        ))
+    rigged.register_frame(1)
+    for point in model.points3D.values():
+        rigged.add_point3D(point.xyz, point.track, point.color)
+    for path in sparse.iterdir():
+        path.unlink()
+    if binary:
+        rigged.write_binary(sparse)
+        for image in range(len(images)):
+            sparse_patch.set_pose_value(sparse / "images.bin", image, 4, 0.1 * image)
+    else:
+        rigged.write_text(sparse)
+        lines = (sparse / "images.txt").read_text().splitlines()
+        for i, line in enumerate(lines):
+            words = line.split(" ")
+            if len(words) == 10 and words[9].endswith(".png"):
+                lines[i] = " ".join(words[:5] + ["0.3"] + words[6:])
+        (sparse / "images.txt").write_text("\n".join(lines) + "\n")
+    for image in pycolmap.Reconstruction(sparse).images.values():
+        difference = image.cam_from_world().matrix() - poses[image.name].matrix()
+        assert np.abs(difference).max() < 1e-9, "COLMAP takes the poses from the rig"
+
+
+class RigTest(unittest.TestCase):
+    def test_the_poses_of_rigs_count_as_in_colmap(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        scene = pathlib.Path(folder.name) / "scene"
+        size = ["--views", "4", "--width", "96", "--height", "72"]
+        subprocess.run([HPM_MAKE_SCENE, "tilted_plane", scene, *size], check=True)
+        depths = {}
+        for kind in ("plain", "bin", "txt"):
+            dense = pathlib.Path(folder.name) / kind
+            shutil.copytree(scene, dense)
+            if kind != "plain":
+                write_as_rig(dense / "sparse", kind == "bin")
+            result = subprocess.run(
+                [HPM_MVS, "patch_match_stereo", "--workspace_path", dense, *FAST],
+                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=200,
+            )
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertEqual(result.stderr.count("have another pose"), int(kind != "plain"))
+            path = dense / "stereo/depth_maps/view01.png.geometric.bin"
+            depths[kind] = np.frombuffer(path.read_bytes()[-4 * 96 * 72 :], "<f4")
+        both = (depths["plain"] > 0) & (depths["bin"] > 0)
+        self.assertGreater(both.mean(), 0.5)
+        error = np.abs(depths["bin"] / np.where(both, depths["plain"], 1) - 1)[both]
+        self.assertLess(np.quantile(error, 0.9), 0.01)
+        self.assertTrue((depths["txt"] == depths["bin"]).all())
 
 
 if __name__ == "__main__":

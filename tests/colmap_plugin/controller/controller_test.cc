@@ -7,6 +7,7 @@
 #include "src/engine/schedule.h"
 #include "tests/colmap_plugin/controller/scene_workspace.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -127,6 +128,97 @@ TEST_F(ControllerTest, ValidDepthsAreTrue) {
   }
   EXPECT_GT(num_valid, kWidth * kHeight / 2);
   EXPECT_GT(num_true, 0.9 * num_valid);
+}
+
+// The surface reaches out of the range: what lies outside is found, not
+// replaced by something false inside.
+TEST_F(ControllerTest, NothingOutsideAGivenRangeIsPublished) {
+  const TrueMaps truth =
+      RenderTrueMaps(MakeTiltedPlane(SmallScene(kNumImages, kWidth, kHeight)),
+                     scene_.views()[1].camera,
+                     -0.5);
+  std::vector<float> sorted = truth.depth;
+  std::sort(sorted.begin(), sorted.end());
+  const float nearest = sorted.front(), middle = sorted[sorted.size() / 2];
+  for (const auto& [min, max] :
+       {std::pair(nearest, middle), {0.7f * nearest, 0.85f * nearest}}) {
+    options_.patch_match.depth_min = min;
+    options_.patch_match.depth_max = max;
+    Run();
+    const std::vector<float> depth = Depth(1, "geometric");
+    int num_published = 0, num_false = 0;
+    for (size_t i = 0; i < depth.size(); ++i) {
+      if (depth[i] == 0) continue;
+      EXPECT_GE(depth[i], min);
+      EXPECT_LE(depth[i], max);
+      ++num_published;
+      num_false += std::abs(depth[i] / truth.depth[i] - 1) > 0.05;
+    }
+    EXPECT_LT(num_false, 0.01 * kWidth * kHeight);
+    if (max > nearest) EXPECT_GT(num_published, 0.3 * kWidth * kHeight);
+  }
+}
+
+// The photometric maps are cut, too, once nobody reads them, and made whole
+// again for whoever does.
+TEST_F(ControllerTest, InputMapsAreCutWhenTheRunIsComplete) {
+  options_.patch_match.depth_min = 4.5;
+  options_.patch_match.depth_max = 5;
+  Run();
+  const auto num_outside = [&](int image) {
+    const std::vector<float> depth = Depth(image, "photometric");
+    return std::count_if(depth.begin(), depth.end(), [](float z) {
+      return z != 0 && (z < 4.5f || z > 5);
+    });
+  };
+  for (int i = 0; i < kNumImages; ++i) EXPECT_EQ(num_outside(i), 0);
+  const std::vector<float> expected = Depth(1, "geometric");
+  EXPECT_EQ(Run().num_kept, kNumImages);
+  std::filesystem::remove(MapPath("depth_maps", 1, "geometric"));
+  Run();
+  EXPECT_EQ(Depth(1, "geometric"), expected);
+  for (int i = 0; i < kNumImages; ++i) EXPECT_EQ(num_outside(i), 0);
+  // Another range, of the same search.
+  options_.patch_match.depth_max = 5.2;
+  EXPECT_EQ(Run().num_computed, kNumImages);
+}
+
+// The maps of a few references are those of a run over all images, byte for
+// byte, and nothing of the others is published or left behind.
+TEST_F(ControllerTest, AFewReferencesGetTheMapsOfTheFullRun) {
+  for (const char* method : {"nesp", "hpm_plus"}) {
+    options_.hpm.method = method;
+    options_.hpm.num_levels = 2;
+    Run();
+    const std::vector<float> expected = Depth(1, "geometric");
+    for (const char* folder : {"depth_maps", "normal_maps", "hpm_mvs"})
+      std::filesystem::remove_all(scene_.path() / "stereo" / folder);
+    const std::filesystem::path cfg = scene_.path() / "stereo/patch-match.cfg";
+    const std::string all = ReadFile(cfg);
+    WriteFile(cfg, ViewName(1) + "\n__auto__, 20\n");
+    const RunSummary summary = Run();
+    EXPECT_EQ(summary.num_problems, 1);
+    EXPECT_EQ(summary.num_computed, 1);
+    EXPECT_EQ(summary.num_fusable, 1);
+    EXPECT_EQ(Depth(1, "geometric"), expected) << method;
+    EXPECT_THAT(FilesNamedLike(ViewName(0) + ".photometric.bin"),
+                testing::IsEmpty());
+    EXPECT_THAT(FilesNamedLike(".depth.bin"), testing::IsEmpty());
+    EXPECT_EQ(Run().num_kept, 1);
+    WriteFile(cfg, all);
+    Run();
+    EXPECT_EQ(Depth(1, "geometric"), expected) << method;
+  }
+}
+
+TEST_F(ControllerTest, ASourceThatCannotBeReadFailsNobodyElse) {
+  WriteFile(scene_.path() / "stereo/patch-match.cfg",
+            ViewName(1) + "\n__auto__, 20\n");
+  std::filesystem::remove(scene_.path() / "images" / ViewName(3));
+  options_.patch_match.allow_missing_files = true;
+  const RunSummary summary = Run();
+  EXPECT_THAT(summary.failed, testing::IsEmpty());
+  EXPECT_GT(summary.valid_pixel_share, 0.5);
 }
 
 TEST_F(ControllerTest, SecondRunKeepsEverything) {

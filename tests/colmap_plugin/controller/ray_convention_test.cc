@@ -57,6 +57,15 @@ TEST(RayConvention, RoundTripIsExactToRounding) {
   }
 }
 
+TEST(RayConvention, DropsDepthsOutsideARangeWithTheirNormals) {
+  DepthAndNormal maps = {{2, 2, 1, {1, 2, 3, 4}},
+                         {2, 2, 3, std::vector<float>(12, 0.5f)}};
+  EXPECT_EQ(DropOutside({2, 3}, &maps), 2u);
+  EXPECT_EQ(maps.depth.data, (std::vector<float>{0, 2, 3, 0}));
+  for (size_t i = 0; i < 12; ++i)
+    EXPECT_EQ(maps.normal.data[i], maps.depth.data[i % 4] > 0 ? 0.5f : 0);
+}
+
 TEST(RayConvention, RoundTripsDoNotDrift) {
   HypothesisMap map = RandomPlanes();
   const HypothesisMap first = map;

@@ -68,9 +68,17 @@ TEST(StageRunner, ForgetsTheViewsWhenTheImageIsDone) {
   const LogSink log = [](LogLevel, const std::string&) {};
   InputCache inputs(workspace, 1 << 20);
   RecordingBackend backend;
-  StageRunner runner(
-      workspace, problems, schedule, options, plan, &inputs, &backend, log);
-  const CancelToken cancel;
+  CancelToken cancel;
+  const RunLock lock(workspace.StatePath(), log, &cancel);
+  StageRunner runner(workspace,
+                     problems,
+                     schedule,
+                     options,
+                     plan,
+                     lock,
+                     &inputs,
+                     &backend,
+                     log);
   runner.Run(0, 0, {&cancel, nullptr});
   EXPECT_THAT(backend.calls,
               testing::ElementsAre("set", "run", "filter", "forget"));

@@ -295,17 +295,61 @@ TEST_F(StagePlanTest, MissingConsistencyGraphsAreMadeWhenAskedFor) {
   EXPECT_THAT(Needed(Plan(), 3), ElementsAre(0, 1, 2, 3, 4));
   const StagePlan plan = Plan();
   for (const int s : {0, 3}) {
-    EXPECT_TRUE(plan.WritesGraph(s));
+    EXPECT_TRUE(plan.WritesGraph(s, 0));
     for (int p = 0; p < 5; ++p) {
       WriteConsistencyGraph(plan.Files(s, p).graph, {kWidth, kHeight, {}});
     }
   }
-  EXPECT_FALSE(plan.WritesGraph(1));
+  EXPECT_FALSE(plan.WritesGraph(1, 0));
   EXPECT_THAT(Needed(Plan(), 3), IsEmpty());
 }
 
-// A source that is never a reference has no maps; nothing waits for it.
-TEST_F(StagePlanTest, SourcesThatAreNoReferencesAreNotComputed) {
+// Images 1 and 2 are there for the reference 0 alone: image 0 reads maps of 1
+// before its last stage, image 1 those of 2 before that.
+TEST_F(StagePlanTest, MapsOfSourcesAreMadeAsFarAsOthersReadThem) {
+  problems_.resize(3);
+  problems_[1].is_reference = problems_[2].is_reference = false;
+  const StagePlan plan = Plan();
+  const auto needed = [&](int stage) {
+    std::vector<int> images;
+    for (int p = 0; p < 3; ++p) {
+      if (plan.IsNeeded(stage, p)) images.push_back(p);
+    }
+    return images;
+  };
+  EXPECT_THAT(needed(3), ElementsAre(0));
+  EXPECT_THAT(needed(2), ElementsAre(0, 1));
+  EXPECT_THAT(needed(1), ElementsAre(0, 1, 2));
+  EXPECT_THAT(needed(0), ElementsAre(0, 1, 2));
+}
+
+// An image may be a reference in another run: neither takes the other's maps
+// for its own.
+TEST_F(StagePlanTest, MapsOfSourcesAreNotPublished) {
+  FinishAll(false);
+  const std::filesystem::path depth = DepthFile(0, 1);
+  problems_[1].is_reference = false;
+  options_.patch_match.write_consistency_graph = true;
+  const StagePlan plan = Plan();
+  EXPECT_FALSE(plan.IsPublic(0, 1));
+  EXPECT_TRUE(plan.IsPublic(0, 0));
+  EXPECT_FALSE(plan.WritesGraph(0, 1));
+  EXPECT_NE(plan.Files(0, 1).depth, depth);
+  EXPECT_THAT(plan.Files(0, 1).depth.string(),
+              testing::StartsWith(workspace_.StatePath().string()));
+  EXPECT_NE(plan.NameOf(0, 1), plan.NameOf(0, 0));
+  EXPECT_FALSE(plan.HasCompleteMaps(0, 1));
+}
+
+// The result does not depend on who else is a reference.
+TEST_F(StagePlanTest, AReferenceIsFinishedWhateverItsSourcesAre) {
+  FinishAll(false);
+  for (const int p : {1, 2, 3, 4}) problems_[p].is_reference = false;
+  for (int s = 0; s < 4; ++s) EXPECT_THAT(Needed(Plan(), s), IsEmpty());
+}
+
+// A source without a problem has no maps; nothing waits for it.
+TEST_F(StagePlanTest, SourcesWithoutAProblemAreNotComputed) {
   problems_.resize(2);
   const StagePlan plan = Plan();
   for (int s = 0; s < 4; ++s) EXPECT_EQ(plan.CountNeeded(s), 2);

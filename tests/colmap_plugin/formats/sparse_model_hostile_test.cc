@@ -102,6 +102,26 @@ TEST(HostileModel, RigsAndFramesMustAgreeWithTheImages) {
                             .Add(uint32_t{1})
                             .str()),
                 "unknown sensor type 5");
+  const auto sensor = [](uint32_t id) {
+    return Bytes().Add(int32_t{0}).Add(id);
+  };
+  const std::string reference =
+      Bytes().Add(uint32_t{1}).Add(uint32_t{2}).str() + sensor(1).str();
+  ExpectRefused("rigs.bin",
+                Counted(1, reference + sensor(1).Add(uint8_t{0}).str()),
+                "rig 1 has sensor 1 twice (byte 8)");
+  // COLMAP reads such a model and fails when it needs the pose.
+  ModelFiles no_pose = Joined(TinyBinaryModel(), TinyRigFiles());
+  no_pose["rigs.bin"] = Counted(1, reference + sensor(2).Add(uint8_t{0}).str());
+  no_pose["frames.bin"] = Counted(
+      1, FrameRecord(1, 1, DataRecord(0, 1, 7) + DataRecord(0, 2, 3), 2));
+  const ScratchFolder no_pose_folder;
+  WriteModel(no_pose_folder.path(), no_pose);
+  ExpectError(ErrorCode::kBadInput,
+              "frames.bin: frame 1 has image 3 of camera 2, which has no pose "
+              "in rig 1 (byte 8)",
+              [&] { ReadSparseModel(no_pose_folder.path()); });
+
   const auto frame = [](uint32_t rig, const std::string& data) {
     return FrameRecord(1, rig, data, static_cast<uint32_t>(data.size() / 16));
   };
@@ -169,6 +189,9 @@ TEST(HostileModel, TextErrorsNameTheLine) {
   ExpectRefused("points3D.txt", "9 1 2 3 1 2 3 0.5 7", "points3D.txt:1:");
   ExpectRefused("points3D.txt", "9 1 2", "points3D.txt:1:");
   ExpectRefused("rigs.txt", "1 4000000000 CAMERA 1", "rigs.txt:1:");
+  ExpectRefused(
+      "rigs.txt", "1 2 CAMERA 1 CAMERA 2 2", "rigs.txt:1: expected 0");
+  ExpectRefused("rigs.txt", "1 2 CAMERA 1 CAMERA 2 1 1 0 0", "rigs.txt:1:");
   ExpectRefused("rigs.txt", "1 1 LIDAR 1", "unknown sensor type 'LIDAR'");
   ExpectRefused(
       "frames.txt", "1 1 1 0 0 0 0 0 0 4000000000 CAMERA 1 5", "frames.txt:1:");

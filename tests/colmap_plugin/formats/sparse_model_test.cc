@@ -94,10 +94,63 @@ TEST(SparseModel, FramesOrderTheImagesAndTracksFollow) {
     const SparseModel model = ReadFiles(files);
     EXPECT_THAT(ImageIds(model), ElementsAre(5, 7, 3));
     EXPECT_EQ(model.images[0].name, "e.jpg");
-    EXPECT_EQ(model.images[1].cam_from_world_rotation.w(), -1);
     EXPECT_THAT(model.points[0].track, ElementsAre(1, 2, 1));
     EXPECT_THAT(model.points[1].track, ElementsAre(0));
   }
+}
+
+// COLMAP 3.12 and later ignores the poses of the images file then.
+TEST(SparseModel, PosesComeFromRigsAndFrames) {
+  // A quarter turn about y, then one to the right.
+  const TestPose turned = {3, 0, 3, 0, 1, 0, 0};
+  for (const auto& [extension, files] : std::map<std::string, ModelFiles>{
+           {".bin", Joined(TinyBinaryModel(), TinyRigFiles(turned))},
+           {".txt", Joined(TinyTextModel(), TinyTextRigFiles(turned))}}) {
+    const ScratchFolder folder;
+    WriteModel(folder.path(), files);
+    std::vector<std::string> warnings;
+    const SparseModel model = ReadSparseModel(
+        folder.path(), [&](LogLevel level, const std::string& line) {
+          EXPECT_EQ(level, LogLevel::kWarning);
+          warnings.push_back(line);
+        });
+    ASSERT_THAT(ImageIds(model), ElementsAre(5, 7, 3));
+    const Eigen::Vector3d in_rig(0.5, -1, 2);
+    for (const size_t i : {0, 1}) {
+      EXPECT_EQ(model.images[i].cam_from_world_rotation.w(), 1);
+      EXPECT_EQ(model.images[i].cam_from_world_translation, in_rig);
+    }
+    const SparseImage& image = model.images[2];
+    EXPECT_NEAR(
+        (image.cam_from_world_translation - Eigen::Vector3d(2 + 1, -1, -0.5))
+            .norm(),
+        0,
+        1e-12);
+    EXPECT_NEAR((image.cam_from_world_rotation * Eigen::Vector3d(1, 2, 3) -
+                 Eigen::Vector3d(3, 2, -1))
+                    .norm(),
+                0,
+                1e-12);
+    ASSERT_EQ(warnings.size(), 1u);
+    for (const std::string& part : {std::string("1 of 3 images"),
+                                    std::string("'c/d.jpg' by 90 degrees"),
+                                    "images" + extension,
+                                    "rigs" + extension}) {
+      EXPECT_THAT(warnings[0], testing::HasSubstr(part));
+    }
+  }
+}
+
+TEST(SparseModel, RigsThatAgreeWithTheImagesChangeNothing) {
+  const ScratchFolder folder;
+  ModelFiles files = Joined(TinyTextModel(), TinyTextRigFiles());
+  // As much as the digits of a text file take away.
+  std::string& images = files["images.txt"];
+  images.replace(images.find("3 1 0 0 0"), 9, "3 1 1e-6 0 0");
+  WriteModel(folder.path(), files);
+  ReadSparseModel(folder.path(), [](LogLevel, const std::string& line) {
+    ADD_FAILURE() << line;
+  });
 }
 
 TEST(SparseModel, EmptyRigsAndFramesAreALegacyModel) {

@@ -1,11 +1,12 @@
 // The smallest sparse model with everything in it, as the bytes of its files:
 // two cameras, three images (ids 7, 3, 5 in file order), two points; optionally
 // one rig with two cameras and two frames that put the images in the order 5,
-// 7, 3.
+// 7, 3 and give them the poses of the images file.
 #pragma once
 
 #include "tests/colmap_plugin/formats/test_files.h"
 
+#include <array>
 #include <map>
 #include <string>
 
@@ -76,13 +77,24 @@ inline ModelFiles TinyTextModel() {
        "# Points\n9 1 2 3 1 2 3 0.5 7 0 3 0 7 1\n4 -1 2 3 1 2 3 0.5 5 0\n"}};
 }
 
+// w, x, y, z, then the translation.
+using TestPose = std::array<double, 7>;
+constexpr TestPose kNoTurn = {1, 0, 0, 0, 0, 0, 0};
+
+inline std::string PoseText(const TestPose& pose) {
+  std::string text;
+  for (const double value : pose) text += std::to_string(value) + " ";
+  return text;
+}
+
 inline std::string FrameRecord(uint32_t id,
                                uint32_t rig_id,
                                const std::string& data,
                                uint32_t num_data) {
   Bytes bytes;
   bytes.Add(id).Add(rig_id);
-  for (int i = 0; i < 7; ++i) bytes.Add(i == 0 ? 1.0 : 0.0);
+  for (const double value : {1.0, 0.0, 0.0, 0.0, 0.5, -1.0, 2.0})
+    bytes.Add(value);
   return bytes.Add(num_data).Text(data).str();
 }
 
@@ -90,20 +102,21 @@ inline std::string DataRecord(int32_t type, uint32_t sensor_id, uint64_t id) {
   return Bytes().Add(type).Add(sensor_id).Add(id).str();
 }
 
-inline std::string RigRecord() {
+// camera_2: its pose in the rig.
+inline std::string RigRecord(const TestPose& camera_2 = kNoTurn) {
   Bytes bytes;
   bytes.Add(uint32_t{1}).Add(uint32_t{3});
   bytes.Add(int32_t{0}).Add(uint32_t{1});  // reference: camera 1
   bytes.Add(int32_t{0})
       .Add(uint32_t{2})
       .Add(uint8_t{1});  // camera 2, with pose
-  for (int i = 0; i < 7; ++i) bytes.Add(i == 0 ? 1.0 : 0.0);
+  for (const double value : camera_2) bytes.Add(value);
   bytes.Add(int32_t{1}).Add(uint32_t{8}).Add(uint8_t{0});  // an IMU, without
   return bytes.str();
 }
 
-inline ModelFiles TinyRigFiles() {
-  return {{"rigs.bin", Counted(1, RigRecord())},
+inline ModelFiles TinyRigFiles(const TestPose& camera_2 = kNoTurn) {
+  return {{"rigs.bin", Counted(1, RigRecord(camera_2))},
           {"frames.bin",
            Counted(2,
                    FrameRecord(1, 1, DataRecord(0, 1, 5), 1) +
@@ -115,12 +128,13 @@ inline ModelFiles TinyRigFiles() {
                                    3))}};
 }
 
-inline ModelFiles TinyTextRigFiles() {
+inline ModelFiles TinyTextRigFiles(const TestPose& camera_2 = kNoTurn) {
   return {
-      {"rigs.txt", "# Rigs\n1 3 CAMERA 1 CAMERA 2 1 1 0 0 0 0 0 0 IMU 8 0\n"},
+      {"rigs.txt",
+       "# Rigs\n1 3 CAMERA 1 CAMERA 2 1 " + PoseText(camera_2) + "IMU 8 0\n"},
       {"frames.txt",
-       "# Frames\n1 1 1 0 0 0 0 0 0 1 CAMERA 1 5\n"
-       "2 1 1 0 0 0 0 0 0 3 IMU 8 77 CAMERA 2 3 CAMERA 1 7\n"}};
+       "# Frames\n1 1 1 0 0 0 0.5 -1 2 1 CAMERA 1 5\n"
+       "2 1 1 0 0 0 0.5 -1 2 3 IMU 8 77 CAMERA 2 3 CAMERA 1 7\n"}};
 }
 
 inline ModelFiles Joined(ModelFiles a, const ModelFiles& b) {

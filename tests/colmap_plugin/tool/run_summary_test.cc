@@ -20,12 +20,17 @@ TEST(RunSummaryTest, TellsWhatWasDoneAndWhatComesNext) {
   summary.failed = {"a.jpg"};
   summary.seconds = 200;
   summary.valid_pixel_share = 0.625;
+  summary.filter_losses = {{FilterCriterion::kFacing, 1e-5},
+                           {FilterCriterion::kAngle, 0.3},
+                           {FilterCriterion::kNumConsistent, 0.075}};
+  summary.num_fusable = 11;
   summary.peak_memory_bytes = uint64_t{3} << 29;
   summary.cpu_target = "AVX2";
   EXPECT_EQ(SummaryLines(options, summary),
             (std::vector<std::string>{
                 "12 images: 7 computed, 4 kept from an earlier run, 1 failed",
                 "Pixels with a depth: 62.5 %",
+                "Pixels dropped by: angle 30.0 %, consistent views 7.5 %",
                 "Time 3 min 20 s, peak memory 1.50 GiB, AVX2",
                 "Maps: /data/dense/stereo/depth_maps and "
                 "/data/dense/stereo/normal_maps",
@@ -39,6 +44,25 @@ TEST(RunSummaryTest, NamesThePhotometricMapsWithoutGeometricPasses) {
   options.patch_match.geom_consistency = false;
   EXPECT_THAT(SummaryLines(options, {}),
               Contains(HasSubstr("--input_type photometric")));
+}
+
+// With its default of 5 images per point fusion would leave nothing.
+TEST(RunSummaryTest, FewImagesNeedAnOptionOfFusion) {
+  RunSummary summary;
+  const std::pair<int, const char*> expected[] = {{1, "min_num_pixels 1"},
+                                                  {2, "min_num_pixels 2"},
+                                                  {3, "min_num_pixels 2"},
+                                                  {4, "min_num_pixels 3"},
+                                                  {5, "min_num_pixels 4"}};
+  for (const auto& [num_images, option] : expected) {
+    summary.num_fusable = num_images;
+    EXPECT_THAT(SummaryLines({}, summary).back(), testing::EndsWith(option));
+  }
+  for (const int num_images : {0, 6}) {
+    summary.num_fusable = num_images;
+    EXPECT_THAT(SummaryLines({}, summary),
+                Not(Contains(HasSubstr("min_num_pixels"))));
+  }
 }
 
 TEST(RunSummaryTest, ShareIsLeftOutWhenNothingWasComputed) {

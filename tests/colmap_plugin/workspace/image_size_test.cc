@@ -42,6 +42,28 @@ TEST_F(ImageSizeTest, IsReadFromEveryUsualType) {
   EXPECT_EQ(SizeOf(Encoded(".tif", 37, 21, CV_16UC3)), "37x21");
 }
 
+TEST_F(ImageSizeTest, DepthIsReadFromEveryUsualType) {
+  const auto depth_of = [&](const char* extension, int type) {
+    WriteFile(folder_.path() / "image", Encoded(extension, 37, 21, type));
+    const auto size = ReadImageSize(folder_.path() / "image");
+    EXPECT_TRUE(size) << extension;
+    EXPECT_EQ(size && size->is_jpeg, std::string(extension) == ".jpg");
+    return size ? size->depth : SampleDepth::k8;
+  };
+  for (const char* extension : {".jpg", ".png", ".bmp", ".tif", ".ppm"}) {
+    EXPECT_EQ(depth_of(extension, CV_8UC3), SampleDepth::k8) << extension;
+  }
+  EXPECT_EQ(depth_of(".jpg", CV_8UC1), SampleDepth::k8);
+  EXPECT_EQ(depth_of(".tif", CV_8UC1), SampleDepth::k8);
+  for (const char* extension : {".png", ".tif", ".ppm"})
+    EXPECT_EQ(depth_of(extension, CV_16UC3), SampleDepth::k16) << extension;
+  EXPECT_EQ(depth_of(".png", CV_16UC1), SampleDepth::k16);
+  EXPECT_EQ(depth_of(".tif", CV_16UC1), SampleDepth::k16);
+  EXPECT_EQ(depth_of(".tif", CV_32FC1), SampleDepth::kOther);
+  EXPECT_EQ(depth_of(".tif", CV_32FC3), SampleDepth::kOther);
+  EXPECT_EQ(depth_of(".hdr", CV_32FC3), SampleDepth::kOther);
+}
+
 TEST_F(ImageSizeTest, JpegMetadataAndFillBytesAreSkipped) {
   const std::string jpeg = Encoded(".jpg", 37, 21);
   std::string app1 =

@@ -2,6 +2,10 @@
 
 #include "tests/colmap_plugin/workspace/test_workspace.h"
 
+#include <cmath>
+#include <cstdlib>
+#include <map>
+
 namespace hpm {
 namespace {
 
@@ -9,15 +13,18 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-// Five images in a row; a point seen by all of 0 ... 3, a second by 1 and 2.
-// Image 4 shares nothing.
+// Five images in a row; points seen by all of 0 ... 3, as many by 1 and 2.
+// Image 4 looks the other way and shares nothing.
 class ProblemTest : public ::testing::Test {
  protected:
   ProblemTest() {
-    for (int i = 0; i < 5; ++i)
+    for (int i = 0; i < 4; ++i)
       files_.AddImage(fmt::format("{}.jpg", i), {1.0 * i, 0, 0});
-    files_.AddPoint({0, 0, 5}, {0, 1, 2, 3});
-    files_.AddPoint({1, 0, 5}, {1, 2});
+    files_.AddImagePose("4.jpg", "0 0 1 0 4 0 0");
+    for (int i = 0; i < 10; ++i) {
+      files_.AddPoint({0, 0, 5}, {0, 1, 2, 3});
+      files_.AddPoint({1, 0, 5}, {1, 2});
+    }
   }
 
   std::vector<StereoProblem> Read(const std::string& cfg) {
@@ -145,12 +152,28 @@ TEST_F(ProblemTest, ReferenceAndRepeatsAreNoSources) {
 }
 
 TEST_F(ProblemTest, ImagesWithoutSourcesAreSkippedWithAWarning) {
-  EXPECT_THAT(Read("4.jpg\n__auto__, 20\n0.jpg\n0.jpg\n"), IsEmpty());
-  EXPECT_THAT(
-      files_.Warnings(),
-      ElementsAre(
-          "Ignoring reference image 4.jpg, because it has no source images.",
-          "Ignoring reference image 0.jpg, because it has no source images."));
+  const auto problems =
+      Read("4.jpg\n__auto__, 20\n0.jpg\n0.jpg\n1.jpg\n2.jpg\n");
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_EQ(problems[0].ref_image, 1);
+  EXPECT_THAT(files_.Warnings(),
+              ElementsAre("Ignoring 2 reference images (the first: 4.jpg), "
+                          "because they have no source images."));
+}
+
+TEST_F(ProblemTest, NothingToDoIsAnErrorWithARemedy) {
+  for (const auto& [cfg, part] : std::map<std::string, std::string>{
+           {"", "names no reference image"},
+           {"# 0.jpg\n", "image_undistorter"},
+           {"0.jpg\n__auto__, 0\n1.jpg\n1.jpg\n", "none of the 2"},
+           {"4.jpg\n__auto__, 20\n", "__all__"},
+           {"4.jpg\n0.jpg\n", "depth_min"}}) {
+    const auto error = ErrorOfReading(cfg);
+    ASSERT_TRUE(error) << cfg;
+    EXPECT_EQ(error->code(), ErrorCode::kBadInput);
+    EXPECT_THAT(error->what(), HasSubstr("patch-match.cfg"));
+    EXPECT_THAT(error->what(), HasSubstr(part)) << cfg;
+  }
 }
 
 TEST_F(ProblemTest, OneSourceIsEnough) {
@@ -207,17 +230,105 @@ TEST_F(ProblemTest, MinTriangulationAngleIsHonoured) {
   EXPECT_THAT(problems[0].src_images, ElementsAre(2, 3));
 }
 
-TEST_F(ProblemTest, UnknownDepthRangeNamesTheImage) {
-  const auto error = ErrorOfReading("4.jpg\n0.jpg\n");
-  ASSERT_TRUE(error);
-  EXPECT_EQ(error->code(), ErrorCode::kBadInput);
-  EXPECT_THAT(error->what(), HasSubstr("4.jpg"));
+TEST_F(ProblemTest, AnUnknownDepthRangeDoesNotStopTheOthers) {
+  EXPECT_EQ(Read("4.jpg\n0.jpg\n0.jpg\n__all__\n").size(), 1u);
+  EXPECT_THAT(
+      files_.Warnings(),
+      ElementsAre(testing::AllOf(HasSubstr("Ignoring reference image 4.jpg"),
+                                 HasSubstr("depth_min"),
+                                 HasSubstr("depth_max"))));
   options_.depth_min = 1;
   options_.depth_max = 2;
   const auto problems = Read("4.jpg\n0.jpg\n");
   ASSERT_EQ(problems.size(), 1u);
-  EXPECT_EQ(problems[0].depth_min, 1);
-  EXPECT_EQ(problems[0].depth_max, 2);
+  EXPECT_EQ(problems[0].published.min, 1);
+  EXPECT_EQ(problems[0].published.max, 2);
+}
+
+TEST_F(ProblemTest, WhatFusionCannotJoinIsSaidOnceBefore) {
+  options_.depth_min = 1;
+  options_.depth_max = 2;
+  Read("4.jpg\n0.jpg\n0.jpg\n__all__\n");
+  EXPECT_THAT(files_.Warnings(),
+              ElementsAre(testing::AllOf(HasSubstr("reference image 4.jpg"),
+                                         HasSubstr("stereo_fusion"),
+                                         HasSubstr("point_triangulator"))));
+}
+
+// Models of feed-forward networks, and of converters that know poses only.
+class WithoutTracksTest : public ::testing::Test {
+ protected:
+  // Cameras on a circle around the origin, 15 degrees apart, looking at it.
+  WithoutTracksTest() {
+    for (int i = 0; i < kNumImages; ++i) {
+      const double half = i * 7.5 * 3.14159265358979323846 / 180;
+      files_.AddImagePose(
+          fmt::format("{}.jpg", i),
+          fmt::format("{} 0 {} 0 0 0 8", std::cos(half), std::sin(half)));
+    }
+    for (int i = 0; i < kNumImages; ++i)
+      cfg_ += fmt::format("{}.jpg\n__auto__, 4\n", i);
+  }
+
+  void ExpectNeighboursAsSources() {
+    files_.WriteCfg(cfg_);
+    const auto problems = ReadProblems(files_.Open(), {}, files_.Log());
+    ASSERT_EQ(problems.size(), static_cast<size_t>(kNumImages));
+    for (const StereoProblem& problem : problems) {
+      ASSERT_EQ(problem.src_images.size(), 4u);
+      for (const int source : problem.src_images) {
+        const int steps = std::abs(source - problem.ref_image);
+        EXPECT_LE(std::min(steps, kNumImages - steps), 3);
+      }
+      EXPECT_LT(problem.depth_min, 7);
+      EXPECT_GT(problem.depth_max, 9);
+      EXPECT_LT(problem.depth_max, 100);
+    }
+    EXPECT_THAT(files_.Warnings(),
+                ElementsAre(HasSubstr("24 reference images (the first: 0.jpg)"),
+                            HasSubstr("Fusion will find nothing")));
+  }
+
+  static constexpr int kNumImages = 24;
+  TestWorkspace files_;
+  std::string cfg_;
+};
+
+TEST_F(WithoutTracksTest, PointsTellSourcesAndRanges) {
+  for (int i = 0; i < 300; ++i)
+    files_.AddPoint({std::cos(i), std::cos(2.1 * i), std::sin(i)}, {});
+  ExpectNeighboursAsSources();
+}
+
+TEST_F(WithoutTracksTest, WithoutPointsThePosesDo) {
+  ExpectNeighboursAsSources();
+}
+
+TEST_F(WithoutTracksTest, AnImageWithoutTracksHelpsTheOthers) {
+  for (int i = 0; i < 300; ++i) {
+    files_.AddPoint(
+        {std::cos(i), std::cos(2.1 * i), std::sin(i)},
+        i % 2 == 0 ? std::vector<int>{} : std::vector<int>{5, 6, 8});
+  }
+  files_.WriteCfg("6.jpg\n__auto__, 4\n8.jpg\n__auto__, 2\n");
+  const auto problems = ReadProblems(files_.Open(), {}, files_.Log());
+  ASSERT_EQ(problems.size(), 2u);
+  // Those that share tracks come first, and are all if they are enough.
+  EXPECT_THAT(problems[0].src_images, ElementsAre(5, 8, 7, testing::_));
+  EXPECT_THAT(problems[1].src_images, ElementsAre(5, 6));
+  EXPECT_THAT(files_.Warnings(), IsEmpty());
+}
+
+TEST_F(WithoutTracksTest, TracksOfOneImageDoNotHelpFusion) {
+  for (int i = 0; i < 20 * kNumImages; ++i) {
+    files_.AddPoint({std::cos(i), std::cos(2.1 * i), std::sin(i)},
+                    {i % kNumImages});
+  }
+  files_.WriteCfg(cfg_);
+  EXPECT_EQ(ReadProblems(files_.Open(), {}, files_.Log()).size(),
+            static_cast<size_t>(kNumImages));
+  EXPECT_THAT(files_.Warnings(),
+              ElementsAre(HasSubstr("Fusion will find nothing")));
 }
 
 TEST_F(ProblemTest, UnusableImagesAreDroppedWithAWarning) {
@@ -248,7 +359,7 @@ TEST(Problem, AllWithOneImageIsSkipped) {
   TestWorkspace files;
   files.AddImage("a.jpg", {0, 0, 0});
   files.WriteCfg("a.jpg\n__all__\n");
-  EXPECT_THAT(ReadProblems(files.Open(), {}, files.Log()), IsEmpty());
+  EXPECT_TRUE(ErrorOf([&] { ReadProblems(files.Open(), {}, files.Log()); }));
   EXPECT_THAT(files.Warnings(), ElementsAre(HasSubstr("no source images")));
 }
 

@@ -2,11 +2,13 @@
 
 #include "tests/colmap_plugin/workspace/test_workspace.h"
 
+#include <atomic>
 #include <csignal>
 #include <thread>
 
 #include <fcntl.h>
 #include <nlohmann/json.hpp>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -15,14 +17,56 @@ namespace {
 
 using testing::HasSubstr;
 
+// Waits of a fraction of a second instead of minutes.
+LockRules FastRules() {
+  LockRules rules;
+  rules.heartbeat = std::chrono::milliseconds(20);
+  rules.watch = std::chrono::milliseconds(200);
+  rules.settle = std::chrono::milliseconds(200);
+  return rules;
+}
+
+// As on a network file system, where no flock is trusted.
+LockRules FarRules() {
+  LockRules rules = FastRules();
+  rules.is_local = [](int) { return false; };
+  return rules;
+}
+
+struct TestLock {
+  explicit TestLock(const std::filesystem::path& state,
+                    const LockRules& rules = FastRules())
+      : lock(
+            state,
+            [this](LogLevel level, const std::string& line) {
+              if (level == LogLevel::kWarning) warnings.push_back(line);
+            },
+            &stop,
+            rules) {}
+
+  std::vector<std::string> warnings;
+  CancelToken stop;
+  RunLock lock;
+};
+
+// The time of a file's last change, that many seconds ago.
+void SetAge(const std::filesystem::path& path, int seconds) {
+  timespec times[2] = {};
+  clock_gettime(CLOCK_REALTIME, &times[0]);
+  times[0].tv_sec -= seconds;
+  times[1] = times[0];
+  ASSERT_EQ(utimensat(AT_FDCWD, path.c_str(), times, 0), 0);
+}
+
 // A child process that holds the lock until it is killed.
-pid_t ForkOwner(const std::filesystem::path& state) {
+pid_t ForkOwner(const std::filesystem::path& state,
+                const LockRules& rules = FastRules()) {
   int ready[2];
   if (pipe(ready) != 0) return -1;
   const pid_t pid = fork();
   if (pid == 0) {
     try {
-      const RunLock lock(state);
+      const TestLock lock(state, rules);
       if (write(ready[1], "x", 1) == 1) {
         for (;;) pause();
       }
@@ -53,7 +97,7 @@ class RunLockTest : public ::testing::Test {
   std::string ChangedLock(const std::function<void(nlohmann::json&)>& change) {
     nlohmann::json json;
     {
-      const RunLock held(state());
+      const TestLock held(state());
       json = nlohmann::json::parse(ReadFile(lock()));
     }
     change(json);
@@ -65,7 +109,7 @@ class RunLockTest : public ::testing::Test {
 
 TEST_F(RunLockTest, IsThereWhileHeldAndGoneAfterwards) {
   {
-    const RunLock held(state());
+    const TestLock held(state());
     EXPECT_TRUE(std::filesystem::exists(lock()));
   }
   EXPECT_FALSE(std::filesystem::exists(lock()));
@@ -74,7 +118,7 @@ TEST_F(RunLockTest, IsThereWhileHeldAndGoneAfterwards) {
 TEST_F(RunLockTest, ASecondRunIsToldWhoHoldsIt) {
   const pid_t owner = ForkOwner(state());
   ASSERT_GT(owner, 0);
-  const auto error = ErrorOf([&] { RunLock second(state()); });
+  const auto error = ErrorOf([&] { TestLock second(state()); });
   Kill(owner);
   ASSERT_TRUE(error);
   EXPECT_EQ(error->code(), ErrorCode::kLocked);
@@ -86,8 +130,8 @@ TEST_F(RunLockTest, ASecondRunIsToldWhoHoldsIt) {
 }
 
 TEST_F(RunLockTest, ASecondLockOfTheSameProcessIsRefused) {
-  const RunLock first(state());
-  const auto error = ErrorOf([&] { RunLock second(state()); });
+  const TestLock first(state());
+  const auto error = ErrorOf([&] { TestLock second(state()); });
   ASSERT_TRUE(error);
   EXPECT_EQ(error->code(), ErrorCode::kLocked);
   EXPECT_TRUE(std::filesystem::exists(lock()));
@@ -98,7 +142,7 @@ TEST_F(RunLockTest, TheLockOfAKilledProcessIsTakenOver) {
   ASSERT_GT(owner, 0);
   Kill(owner);
   ASSERT_TRUE(std::filesystem::exists(lock()));
-  const RunLock second(state());
+  const TestLock second(state());
   EXPECT_THAT(ReadFile(lock()), HasSubstr(std::to_string(getpid())));
 }
 
@@ -110,7 +154,7 @@ TEST_F(RunLockTest, AKilledProcessThatNobodyWaitedForIsDead) {
   kill(owner, SIGKILL);
   siginfo_t info;
   waitid(P_PID, static_cast<id_t>(owner), &info, WEXITED | WNOWAIT);
-  EXPECT_FALSE(ErrorOf([&] { RunLock second(state()); }));
+  EXPECT_FALSE(ErrorOf([&] { TestLock second(state()); }));
   waitpid(owner, nullptr, 0);
 }
 
@@ -120,21 +164,193 @@ TEST_F(RunLockTest, AReusedProcessIdIsToldApartByItsStartTime) {
   const std::string other = ChangedLock([](nlohmann::json& json) {
     json["start_time"] = json["start_time"].get<uint64_t>() - 1;
   });
-  WriteFile(lock(), other);
-  EXPECT_FALSE(ErrorOf([&] { RunLock second(state()); }));
+  for (const LockRules& rules : {FastRules(), FarRules()}) {
+    WriteFile(lock(), other);
+    EXPECT_FALSE(ErrorOf([&] { TestLock second(state(), rules); }));
+  }
 }
 
-TEST_F(RunLockTest, OtherHostsAndContainersAreNeverTakenOver) {
+TEST_F(RunLockTest, AKilledContainersLockIsTakenOverOnTheSameMachine) {
+  for (const char* key : {"host", "pid_namespace", "boot_id"}) {
+    WriteFile(lock(), ChangedLock([&](nlohmann::json& json) {
+                json[key] = "elsewhere";
+                json["pid"] = 1;
+              }));
+    EXPECT_FALSE(ErrorOf([&] { TestLock second(state()); })) << key;
+    EXPECT_FALSE(std::filesystem::exists(lock()));
+  }
+}
+
+TEST_F(RunLockTest, AnOwnerInAnotherContainerIsSeenByItsFlock) {
+  const pid_t owner = ForkOwner(state());
+  ASSERT_GT(owner, 0);
+  auto json = nlohmann::json::parse(ReadFile(lock()));
+  json["host"] = "box-a1";
+  json["pid_namespace"] = "pid:[1]";
+  json["pid"] = 4194304;  // beyond all process ids
+  // Into the same file, which the owner keeps locked. That it is not its lock
+  // any more is found at the next heartbeat, but here nobody asks.
+  std::ofstream(lock(), std::ios::trunc) << json.dump();
+  SetAge(lock(), 100000);
+  const auto error = ErrorOf([&] { TestLock second(state()); });
+  Kill(owner);
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->code(), ErrorCode::kLocked);
+  EXPECT_THAT(error->what(), HasSubstr("box-a1"));
+}
+
+// Versions of the program that hold no flock and have no heartbeat.
+TEST_F(RunLockTest, OlderLocksOfOthersAreNeverTakenOver) {
   for (const char* key : {"host", "pid_namespace"}) {
     const std::string foreign = ChangedLock([&](nlohmann::json& json) {
+      for (const char* added : {"boot_id", "token", "flock", "heartbeat"})
+        json.erase(added);
       json[key] = "elsewhere";
       json["start_time"] = 1;
     });
+    for (const LockRules& rules : {FastRules(), FarRules()}) {
+      WriteFile(lock(), foreign);
+      SetAge(lock(), 100000);
+      const auto error = ErrorOf([&] { TestLock second(state(), rules); });
+      ASSERT_TRUE(error) << key;
+      EXPECT_EQ(error->code(), ErrorCode::kLocked);
+      EXPECT_EQ(ReadFile(lock()), foreign);
+    }
+    std::filesystem::remove(lock());
+  }
+}
+
+class FarLockTest : public RunLockTest {
+ protected:
+  // The lock of another machine, last touched so many seconds ago.
+  std::string WriteForeignLock(int age) {
+    const std::string foreign = ChangedLock([](nlohmann::json& json) {
+      json["host"] = "far-away";
+      json["boot_id"] = "elsewhere";
+      json["flock"] = false;
+    });
     WriteFile(lock(), foreign);
-    const auto error = ErrorOf([&] { RunLock second(state()); });
-    ASSERT_TRUE(error) << key;
+    SetAge(lock(), age);
+    return foreign;
+  }
+};
+
+TEST_F(FarLockTest, AnotherMachinesFreshLockIsRespected) {
+  for (const LockRules& rules : {FastRules(), FarRules()}) {
+    const std::string foreign = WriteForeignLock(200);
+    const auto error = ErrorOf([&] { TestLock second(state(), rules); });
+    ASSERT_TRUE(error);
     EXPECT_EQ(error->code(), ErrorCode::kLocked);
+    EXPECT_THAT(error->what(), HasSubstr("far-away"));
+    EXPECT_THAT(error->what(), HasSubstr("300 seconds"));
     EXPECT_EQ(ReadFile(lock()), foreign);
+    std::filesystem::remove(lock());
+  }
+}
+
+TEST_F(FarLockTest, AnotherMachinesSilentLockIsTakenOverWithAWarning) {
+  for (const int age : {400, -400}) {
+    WriteForeignLock(age);
+    const TestLock second(state(), FarRules());
+    ASSERT_EQ(second.warnings.size(), 1u);
+    EXPECT_THAT(second.warnings[0], HasSubstr("far-away"));
+    EXPECT_THAT(ReadFile(lock()), HasSubstr(std::to_string(getpid())));
+  }
+  EXPECT_EQ(folder_.CountFiles(), 0u);
+}
+
+// Its clock goes wrong, or the server's.
+TEST_F(FarLockTest, AnOldLockThatIsTouchedMeanwhileIsRespected) {
+  WriteForeignLock(4000);
+  std::atomic<bool> ending{false};
+  std::thread owner([&] {
+    for (int age = 3999; !ending; --age) {
+      SetAge(lock(), age);
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+  });
+  const auto error = ErrorOf([&] { TestLock second(state(), FarRules()); });
+  ending = true;
+  owner.join();
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->code(), ErrorCode::kLocked);
+}
+
+TEST_F(FarLockTest, AProcessOfThisMachineIsAskedForAlsoThere) {
+  const pid_t owner = ForkOwner(state(), FarRules());
+  ASSERT_GT(owner, 0);
+  EXPECT_TRUE(ErrorOf([&] { TestLock second(state(), FarRules()); }));
+  Kill(owner);
+  EXPECT_FALSE(ErrorOf([&] { TestLock second(state(), FarRules()); }));
+}
+
+TEST_F(FarLockTest, ATakerWhoseLockIsRemovedByAnotherGivesUp) {
+  LockRules rules = FarRules();
+  rules.settle = std::chrono::milliseconds(600);
+  const std::string stale = WriteForeignLock(4000);
+  std::thread other([&] {
+    const auto is_taken = [&] {
+      const std::string now = ReadFile(lock());
+      return !now.empty() && now.back() == '}' && now != stale;
+    };
+    while (!is_taken())
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    std::this_thread::sleep_for(rules.settle / 4);  // it waits by now
+    WriteFile(lock(), "of another taker, who came later");
+  });
+  const auto error = ErrorOf([&] { TestLock second(state(), rules); });
+  other.join();
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->code(), ErrorCode::kLocked);
+  EXPECT_EQ(ReadFile(lock()), "of another taker, who came later");
+}
+
+TEST_F(FarLockTest, WaitingCanBeInterrupted) {
+  WriteForeignLock(4000);
+  LockRules rules = FarRules();
+  rules.watch = std::chrono::hours(1);
+  CancelToken stop;
+  stop.Cancel();
+  const auto error = ErrorOf([&] {
+    RunLock second(
+        state(), [](LogLevel, const std::string&) {}, &stop, rules);
+  });
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->code(), ErrorCode::kInterrupted);
+}
+
+TEST_F(RunLockTest, TheLockIsTouchedWhileItIsHeld) {
+  const TestLock held(state());
+  SetAge(lock(), 1000);
+  struct stat status = {};
+  for (int i = 0; i < 100; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    ASSERT_EQ(stat(lock().c_str(), &status), 0);
+    if (std::time(nullptr) - status.st_mtime < 500) break;
+  }
+  EXPECT_LT(std::time(nullptr) - status.st_mtime, 500);
+  EXPECT_FALSE(held.stop.cancelled());
+  EXPECT_FALSE(ErrorOf([&] { held.lock.ThrowIfLost(); }));
+}
+
+TEST_F(RunLockTest, AnOwnerNoticesThatItsLockWasTakenOver) {
+  for (const bool deleted : {false, true}) {
+    const TestLock held(state());
+    const std::string foreign = ReadFile(lock());
+    std::filesystem::remove(lock());
+    if (!deleted) {
+      auto json = nlohmann::json::parse(foreign);
+      json["host"] = "box-b2";
+      json["token"] = "another";
+      WriteFile(lock(), json.dump());
+    }
+    const auto error = ErrorOf([&] { held.lock.ThrowIfLost(); });
+    ASSERT_TRUE(error);
+    EXPECT_EQ(error->code(), ErrorCode::kLocked);
+    EXPECT_THAT(error->what(), HasSubstr(deleted ? "deleted" : "box-b2"));
+    for (int i = 0; i < 100 && !held.stop.cancelled(); ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    EXPECT_TRUE(held.stop.cancelled());
     std::filesystem::remove(lock());
   }
 }
@@ -148,7 +364,7 @@ TEST_F(RunLockTest, DamagedLocksAreTakenOver) {
                     "\"start_time\":0}"),
         std::string(100000, '[')}) {
     WriteFile(lock(), text);
-    EXPECT_FALSE(ErrorOf([&] { RunLock second(state()); }))
+    EXPECT_FALSE(ErrorOf([&] { TestLock second(state()); }))
         << text.substr(0, 50);
     EXPECT_FALSE(std::filesystem::exists(lock()));
   }
@@ -157,8 +373,9 @@ TEST_F(RunLockTest, DamagedLocksAreTakenOver) {
 TEST_F(RunLockTest, MessagesShowNoControlCharacters) {
   WriteFile(lock(), ChangedLock([](nlohmann::json& json) {
               json["host"] = "a\x1b[2J\nb";
+              json["flock"] = false;
             }));
-  const auto error = ErrorOf([&] { RunLock second(state()); });
+  const auto error = ErrorOf([&] { TestLock second(state()); });
   ASSERT_TRUE(error);
   EXPECT_EQ(std::string(error->what()).find_first_of("\x1b\n"),
             std::string::npos);
@@ -166,7 +383,7 @@ TEST_F(RunLockTest, MessagesShowNoControlCharacters) {
 
 TEST_F(RunLockTest, OnlyTheOwnLockIsRemoved) {
   {
-    const RunLock held(state());
+    const TestLock held(state());
     WriteFile(lock(), "another run");
   }
   EXPECT_EQ(ReadFile(lock()), "another run");
@@ -176,7 +393,7 @@ TEST_F(RunLockTest, LinksAreNotFollowed) {
   std::filesystem::create_directories(state());
   const auto canary = folder_.path() / "canary";
   std::filesystem::create_symlink(canary, lock());
-  const auto error = ErrorOf([&] { RunLock held(state()); });
+  const auto error = ErrorOf([&] { TestLock held(state()); });
   ASSERT_TRUE(error);
   EXPECT_EQ(error->code(), ErrorCode::kBadInput);
   EXPECT_FALSE(std::filesystem::exists(canary));
@@ -184,7 +401,7 @@ TEST_F(RunLockTest, LinksAreNotFollowed) {
 
 TEST_F(RunLockTest, AFolderThatCannotBeMadeIsNamed) {
   WriteFile(folder_.path() / "stereo", "a file");
-  const auto error = ErrorOf([&] { RunLock held(state()); });
+  const auto error = ErrorOf([&] { TestLock held(state()); });
   ASSERT_TRUE(error);
   EXPECT_EQ(error->code(), ErrorCode::kBadInput);
   EXPECT_THAT(error->what(), HasSubstr(state().string()));
@@ -192,13 +409,20 @@ TEST_F(RunLockTest, AFolderThatCannotBeMadeIsNamed) {
 
 // Takers that race for a stale lock: inside the lock each creates a file that
 // must not be there yet.
-TEST_F(RunLockTest, OneOfManyTakersIsInside) {
+class ManyTakersTest : public RunLockTest,
+                       public testing::WithParamInterface<bool> {};
+
+INSTANTIATE_TEST_SUITE_P(NearAndFar, ManyTakersTest, testing::Bool());
+
+TEST_P(ManyTakersTest, OneIsInside) {
+  const LockRules rules = GetParam() ? FastRules() : FarRules();
+  const int kNumRounds = GetParam() ? 20 : 5;
   const pid_t owner = ForkOwner(state());
   ASSERT_GT(owner, 0);
   Kill(owner);
   const std::string stale = ReadFile(lock());
   const std::string inside = (folder_.path() / "inside").string();
-  constexpr int kNumRounds = 20, kNumTakers = 8;
+  constexpr int kNumTakers = 8;
   for (int round = 0; round < kNumRounds; ++round) {
     WriteFile(lock(), stale);
     std::vector<pid_t> takers;
@@ -207,7 +431,7 @@ TEST_F(RunLockTest, OneOfManyTakersIsInside) {
       if (pid == 0) {
         int result = 1;
         try {
-          const RunLock lock(state());
+          const TestLock lock(state(), rules);
           const int fd = open(inside.c_str(), O_CREAT | O_EXCL, 0600);
           result = fd < 0 ? 2 : 0;
           std::this_thread::sleep_for(std::chrono::milliseconds(2));

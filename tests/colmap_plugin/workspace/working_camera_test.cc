@@ -54,7 +54,7 @@ TEST(WorkingCamera, KeepsIntrinsicsButForHalfAPixel) {
   EXPECT_EQ(camera->cy, 59.5f);
 }
 
-TEST(WorkingCamera, PoseIsThatOfTheModel) {
+TEST(WorkingCamera, HasTheModelsAxesAroundItsCentre) {
   SparseImage image = ImageAtOrigin();
   // A quarter turn about z: x goes to y.
   image.cam_from_world_rotation =
@@ -63,9 +63,9 @@ TEST(WorkingCamera, PoseIsThatOfTheModel) {
   const auto camera = Make(Pinhole(160, 120), image);
   ASSERT_TRUE(camera);
   const Vec3f point = CamFromWorld(*camera, {1, 0, 0});
-  EXPECT_NEAR(point.x, 1, 1e-6);
-  EXPECT_NEAR(point.y, 3, 1e-6);
-  EXPECT_NEAR(point.z, 3, 1e-6);
+  EXPECT_NEAR(point.x, 0, 1e-6);
+  EXPECT_NEAR(point.y, 1, 1e-6);
+  EXPECT_NEAR(point.z, 0, 1e-6);
 }
 
 TEST(WorkingCamera, MaxImageSizeScalesEachAxisToWholePixels) {

@@ -1,0 +1,139 @@
+#include "colmap_plugin/controller/deep_images.h"
+
+#include "colmap_plugin/controller/run_budget.h"
+#include "colmap_plugin/formats/atomic_file.h"
+#include "colmap_plugin/workspace/fingerprint.h"
+#include "src/engine/memory_plan.h"
+
+#include <algorithm>
+#include <fstream>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+namespace hpm {
+namespace fs = std::filesystem;
+namespace {
+
+struct DeepImage {
+  int index = 0;
+  std::string key;  // of this file in the record of what was found
+  std::optional<GreyRange> range;
+};
+
+std::vector<DeepImage> DeepImagesOf(const Workspace& workspace) {
+  std::vector<DeepImage> images;
+  for (int i = 0; i < workspace.num_images(); ++i) {
+    const std::optional<ImageSize>& size = workspace.file_size(i);
+    if (!workspace.usable(i) || !workspace.has_picture(i) || !size ||
+        size->depth == SampleDepth::k8) {
+      continue;
+    }
+    const fs::path path = workspace.ImagePath(i);
+    std::error_code ignored;
+    const std::string key =
+        Fingerprint()
+            .AddString(workspace.ImageName(i))
+            .AddInt(static_cast<int64_t>(fs::file_size(path, ignored)))
+            .AddInt(
+                fs::last_write_time(path, ignored).time_since_epoch().count())
+            .Hex();
+    images.push_back({i, key, std::nullopt});
+  }
+  return images;
+}
+
+fs::path RecordPath(const Workspace& workspace) {
+  return workspace.StatePath() / "deep_images.json";
+}
+
+// Whatever is wrong with the record, the images are measured anew.
+void ReadRecord(const Workspace& workspace, std::vector<DeepImage>* images) {
+  std::ifstream file(RecordPath(workspace));
+  const nlohmann::json json =
+      nlohmann::json::parse(file, nullptr, /*allow_exceptions=*/false);
+  if (!json.is_object()) return;
+  for (DeepImage& image : *images) {
+    const auto it = json.find(image.key);
+    if (it == json.end() || !it->is_array() || it->size() != 2 ||
+        !(*it)[0].is_number() || !(*it)[1].is_number())
+      continue;
+    image.range = GreyRange{(*it)[0], (*it)[1]};
+  }
+}
+
+void WriteRecord(const Workspace& workspace,
+                 const std::vector<DeepImage>& images) {
+  nlohmann::json json = nlohmann::json::object();
+  for (const DeepImage& image : images) {
+    if (image.range) json[image.key] = {image.range->low, image.range->high};
+  }
+  WriteFileAtomically(RecordPath(workspace), json.dump(1) + "\n");
+}
+
+// False if there was nothing to do.
+bool Measure(const Workspace& workspace,
+             const CancelToken& cancel,
+             std::vector<DeepImage>* images) {
+  std::vector<DeepImage*> unknown;
+  uint64_t largest = 1;
+  for (DeepImage& image : *images) {
+    const uint64_t bytes = DecodedBytes(workspace, image.index);
+    // A bomb is not even tried.
+    if (image.range || bytes > MemoryLimit()) continue;
+    unknown.push_back(&image);
+    largest = std::max(largest, bytes);
+  }
+  if (unknown.empty()) return false;
+  const uint64_t most = MemoryLimit() / 4 / largest;
+  const int num_threads = static_cast<int>(std::clamp<uint64_t>(
+      most, 1, static_cast<uint64_t>(tbb::this_task_arena::max_concurrency())));
+  tbb::task_arena(num_threads).execute([&] {
+    tbb::parallel_for(size_t{0}, unknown.size(), [&](size_t i) {
+      cancel.ThrowIfCancelled();
+      DeepImage* image = unknown[i];
+      image->range = MeasureGreyRange(workspace.ImagePath(image->index));
+    });
+  });
+  return true;
+}
+
+}  // namespace
+
+std::optional<GreyRange> FindDeepRange(const Workspace& workspace,
+                                       const LogSink& log,
+                                       const CancelToken& cancel) {
+  std::vector<DeepImage> images = DeepImagesOf(workspace);
+  if (images.empty()) return std::nullopt;
+  ReadRecord(workspace, &images);
+  if (Measure(workspace, cancel, &images)) WriteRecord(workspace, images);
+  std::optional<GreyRange> range;
+  bool can_be_cut = true;
+  for (const DeepImage& image : images) {
+    if (workspace.file_size(image.index)->depth == SampleDepth::kOther)
+      can_be_cut = false;
+    if (!image.range) continue;  // unreadable, or black: said when it is used
+    if (!range) range = image.range;
+    range->low = std::min(range->low, image.range->low);
+    range->high = std::max(range->high, image.range->high);
+  }
+  constexpr double kHalfOf16Bits = 32767.5;
+  if (can_be_cut && (!range || range->high - range->low >= kHalfOf16Bits))
+    return std::nullopt;
+  if (!range) range = GreyRange{0, 1};
+  log(LogLevel::kInfo,
+      fmt::format("{} images have more than 8 bits a sample; their grey values "
+                  "from {:g} to {:g}, the range of all of them together, are "
+                  "stretched to 8 bits.",
+                  images.size(),
+                  range->low,
+                  range->high));
+  return range;
+}
+
+}  // namespace hpm

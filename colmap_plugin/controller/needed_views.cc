@@ -1,0 +1,50 @@
+#include "colmap_plugin/controller/needed_views.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hpm {
+
+NeededViews::NeededViews(const ViewSet& views,
+                         const HypothesisMap& map,
+                         const FilterParams& filter)
+    : views_(views),
+      map_(map),
+      min_num_consistent_(filter.min_num_consistent),
+      max_cos_(std::cos(filter.min_triangulation_angle)) {
+  for (const View& src : views.srcs) {
+    warps_.push_back(MakeViewWarp(views.ref.camera, src.camera));
+    centers_.push_back(CamFromWorld(views.ref.camera, Center(src.camera)));
+  }
+}
+
+int NeededViews::At(size_t at) const {
+  if (map_.unexplained.empty() || !map_.unexplained[at])
+    return min_num_consistent_;
+  return std::max(min_num_consistent_, (2 * CountSeeing(at) + 2) / 3);
+}
+
+int NeededViews::CountSeeing(size_t at) const {
+  const auto x = static_cast<float>(at % map_.width);
+  const auto y = static_cast<float>(at / map_.width);
+  const Plane& plane = map_.planes[at];
+  const Vec3f ray = RayAt(views_.ref.camera, x, y);
+  const Vec3f point = (-plane.distance / Dot(plane.normal, ray)) * ray;
+  const Vec3f to_ref = -Normalized(point);
+  const PlaneSlope slope = SlopeOf(views_.ref.camera, plane);
+  int count = 0;
+  for (size_t j = 0; j < warps_.size(); ++j) {
+    const Vec3f to_src = centers_[j] - point;
+    const float distance = Norm(to_src);
+    if (!(distance > 0) || Dot(to_src, plane.normal) <= 0) continue;
+    if (Dot(to_src, to_ref) > max_cos_ * distance) continue;
+    const Vec3f q = WarpPatch(warps_[j], slope, x, y).origin;
+    const float u = q.x / q.z, v = q.y / q.z;
+    count += q.z > 0 && u >= -0.5f && v >= -0.5f &&
+             u <= static_cast<float>(warps_[j].width) - 0.5f &&
+             v <= static_cast<float>(warps_[j].height) - 0.5f;
+  }
+  return count;
+}
+
+}  // namespace hpm

@@ -1,0 +1,40 @@
+// How many sources must confirm a pixel of a finished map.
+#pragma once
+
+#include "src/core/consistency_filter.h"
+#include "src/engine/view.h"
+#include "src/image/hypothesis_map.h"
+
+#include <cstddef>
+#include <vector>
+
+namespace hpm {
+
+// The minimum of COLMAP's filter; where the map is unexplained
+// (HypothesisMap::unexplained) two thirds of the sources that see the plane, if
+// that is more. In front of a sky all views find what hangs over the roofs, but
+// not the same everywhere: half of them agree where nearly all agree on a wall.
+class NeededViews {
+ public:
+  // Keeps references to `views` and `map`.
+  NeededViews(const ViewSet& views,
+              const HypothesisMap& map,
+              const FilterParams& filter);
+
+  // Of pixel row * width + col.
+  int At(size_t at) const;
+
+ private:
+  // Sources into whose image the pixel falls, from whose side its plane is
+  // seen, and at a sufficient angle.
+  int CountSeeing(size_t at) const;
+
+  const ViewSet& views_;
+  const HypothesisMap& map_;
+  const int min_num_consistent_;
+  const float max_cos_;
+  std::vector<ViewWarp> warps_;
+  std::vector<Vec3f> centers_;  // of the sources, reference camera frame
+};
+
+}  // namespace hpm

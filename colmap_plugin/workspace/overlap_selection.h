@@ -1,0 +1,34 @@
+// Which images help a reference image whose tracks do not tell: those that see
+// the same part of the world under a good angle.
+#pragma once
+
+#include "colmap_plugin/workspace/depth_range.h"
+#include "colmap_plugin/workspace/seen_points.h"
+
+#include <vector>
+
+namespace hpm {
+
+class OverlapSelector {
+ public:
+  explicit OverlapSelector(const Workspace& workspace);
+
+  // Best first, of those marked in `candidates`: the images into which most of
+  // the reference's points project, weighted by their angles; three quarters of
+  // the points as in SourceSelector::Select() for min_angle (degrees). The
+  // points are the sparse points that the reference sees, or, where these are
+  // too few, its field of view within `range`.
+  std::vector<int> Select(int ref_image,
+                          const DepthRange& range,
+                          double min_angle,
+                          const std::vector<bool>& candidates) const;
+
+ private:
+  std::vector<Eigen::Vector3d> PointsOf(int image,
+                                        const DepthRange& range) const;
+
+  const ModelViews views_;
+  const SeenPoints seen_;
+};
+
+}  // namespace hpm

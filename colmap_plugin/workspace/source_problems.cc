@@ -1,0 +1,68 @@
+#include "colmap_plugin/workspace/source_problems.h"
+
+#include "colmap_plugin/workspace/source_selection.h"
+
+#include <algorithm>
+#include <map>
+
+namespace hpm {
+namespace {
+
+// COLMAP's own number in patch-match.cfg.
+constexpr int kMaxNumSources = 20;
+
+// Of an image whose own range nothing tells: that of the images which see the
+// same.
+DepthRange RangeOf(const std::vector<const StereoProblem*>& listed_by) {
+  DepthRange range = {listed_by.front()->depth_min,
+                      listed_by.front()->depth_max};
+  for (const StereoProblem* problem : listed_by) {
+    range.min = std::min(range.min, problem->depth_min);
+    range.max = std::max(range.max, problem->depth_max);
+  }
+  return range;
+}
+
+}  // namespace
+
+std::vector<StereoProblem> SourceProblems(
+    const Workspace& workspace,
+    const std::vector<StereoProblem>& problems,
+    const ProblemOptions& options) {
+  std::map<int, std::vector<const StereoProblem*>> listed_by;
+  for (const StereoProblem& problem : problems) {
+    if (!CanBeComputed(workspace, problem)) continue;
+    for (const int src : problem.src_images) listed_by[src].push_back(&problem);
+  }
+  for (const StereoProblem& problem : problems)
+    listed_by.erase(problem.ref_image);
+  if (listed_by.empty()) return {};
+
+  const SourceSelector selector(workspace);
+  const DepthRanges ranges(workspace, options.depth_min, options.depth_max);
+  const int max_num = std::min(kMaxNumSources, options.max_num_src_images);
+  std::vector<StereoProblem> result;
+  for (const auto& [image, references] : listed_by) {
+    StereoProblem problem;
+    problem.ref_image = image;
+    problem.is_reference = false;
+    for (const int src : selector.Select(
+             image, options.min_triangulation_angle, /*max_num=*/-1)) {
+      if (workspace.has_picture(src)) problem.src_images.push_back(src);
+    }
+    if (problem.src_images.empty()) {
+      for (const StereoProblem* reference : references)
+        problem.src_images.push_back(reference->ref_image);
+    }
+    if (problem.src_images.size() > static_cast<size_t>(max_num))
+      problem.src_images.resize(max_num);
+    const DepthRange range =
+        ranges.ForImage(image).value_or(RangeOf(references));
+    problem.depth_min = range.min;
+    problem.depth_max = range.max;
+    result.push_back(problem);
+  }
+  return result;
+}
+
+}  // namespace hpm

@@ -1,0 +1,64 @@
+#include "colmap_plugin/controller/run_budget.h"
+
+#include "src/cpu/cpu_backend.h"
+#include "tests/colmap_plugin/controller/scene_workspace.h"
+
+#include <gtest/gtest.h>
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+
+namespace hpm {
+namespace {
+
+class RunBudgetTest : public testing::Test {
+ protected:
+  void WriteImage(int image, const char* extension, int factor, int type) {
+    std::vector<unsigned char> bytes;
+    cv::imencode(extension,
+                 cv::Mat(30 * factor, 40 * factor, type, cv::Scalar::all(9)),
+                 bytes);
+    WriteFile(scene_.path() / "images" / ViewName(image),
+              {reinterpret_cast<char*>(bytes.data()), bytes.size()});
+  }
+
+  uint64_t Decoded(int image) {
+    return DecodedBytes(scene_.Open(/*max_image_size=*/40), image);
+  }
+
+  uint64_t Working() {
+    StereoProblem problem;
+    problem.ref_image = 0;
+    problem.src_images = {1, 2};
+    const auto backend = MakeCpuBackend(FindCpuTarget("scalar"), 1);
+    return LargestNeeds(scene_.Open(40), {problem}, *backend, true).working;
+  }
+
+  SceneWorkspace scene_{SmallScene(3, 40, 30)};
+};
+
+TEST_F(RunBudgetTest, AFileIsDecodedAsAWhole) {
+  WriteImage(0, ".png", 10, CV_8UC3);
+  EXPECT_EQ(Decoded(0), 400u * 300u * 4u);
+  WriteImage(0, ".png", 10, CV_16UC3);
+  EXPECT_EQ(Decoded(0), 400u * 300u * 12u);
+  WriteImage(0, ".tif", 10, CV_32FC3);
+  EXPECT_EQ(Decoded(0), 400u * 300u * 20u);
+  std::filesystem::remove(scene_.path() / "images" / ViewName(0));
+  EXPECT_EQ(Decoded(0), 0u);
+}
+
+TEST_F(RunBudgetTest, ALargeJpegIsDecodedAtReducedScale) {
+  WriteImage(0, ".jpg", 10, CV_8UC3);
+  EXPECT_EQ(Decoded(0), 200u * 150u * 4u);
+  WriteImage(0, ".jpg", 20, CV_8UC3);
+  EXPECT_EQ(Decoded(0), 200u * 150u * 4u);
+}
+
+TEST_F(RunBudgetTest, OneLargeSourceCounts) {
+  const uint64_t before = Working();
+  WriteImage(2, ".png", 30, CV_8UC3);
+  EXPECT_EQ(Working(), before + 899u * 40u * 30u * 4u);
+}
+
+}  // namespace
+}  // namespace hpm

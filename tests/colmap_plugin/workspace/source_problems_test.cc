@@ -1,0 +1,68 @@
+#include "colmap_plugin/workspace/source_problems.h"
+
+#include "tests/colmap_plugin/workspace/test_workspace.h"
+
+namespace hpm {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+// Five images in a row; neighbours and their neighbours share points, image 4
+// has none.
+class SourceProblemsTest : public testing::Test {
+ protected:
+  SourceProblemsTest() {
+    for (int i = 0; i < 5; ++i)
+      files_.AddImage(fmt::format("{}.jpg", i), {0.5 * i, 0, 0});
+    for (int i = 0; i < 2; ++i)
+      files_.AddPoint({0.5 * i, 0, 4}, {i, i + 1, i + 2});
+  }
+
+  std::vector<StereoProblem> SourcesOf(const std::string& cfg,
+                                       const ProblemOptions& options = {}) {
+    files_.WriteCfg(cfg);
+    const Workspace workspace = files_.Open();
+    return SourceProblems(
+        workspace, ReadProblems(workspace, options, nullptr), options);
+  }
+
+  TestWorkspace files_;
+};
+
+TEST_F(SourceProblemsTest, AreAddedForSourcesThatAreNoReferences) {
+  const auto problems = SourcesOf("0.jpg\n__auto__, 20\n");
+  ASSERT_EQ(problems.size(), 2u);
+  EXPECT_EQ(problems[0].ref_image, 1);
+  EXPECT_EQ(problems[1].ref_image, 2);
+  for (const StereoProblem& problem : problems) {
+    EXPECT_FALSE(problem.is_reference);
+    EXPECT_FLOAT_EQ(problem.depth_min, 3);
+    EXPECT_FLOAT_EQ(problem.depth_max, 5);
+  }
+  EXPECT_THAT(problems[0].src_images, ElementsAre(2, 0, 3));
+}
+
+TEST_F(SourceProblemsTest, AreNoneWhereAllSourcesAreReferences) {
+  EXPECT_THAT(SourcesOf("0.jpg\n1.jpg\n1.jpg\n0.jpg\n"), IsEmpty());
+}
+
+TEST_F(SourceProblemsTest, WithoutPointsTheReferencesHelp) {
+  const auto problems = SourcesOf("0.jpg\n4.jpg\n1.jpg\n4.jpg, 0.jpg\n");
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_EQ(problems[0].ref_image, 4);
+  EXPECT_THAT(problems[0].src_images, ElementsAre(0, 1));
+  EXPECT_FLOAT_EQ(problems[0].depth_min, 3);
+  EXPECT_FLOAT_EQ(problems[0].depth_max, 5);
+}
+
+TEST_F(SourceProblemsTest, TakeNoMoreSourcesThanAllowed) {
+  ProblemOptions options;
+  options.max_num_src_images = 1;
+  const auto problems = SourcesOf("0.jpg\n__auto__, 20\n", options);
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_THAT(problems[0].src_images, ElementsAre(2));
+}
+
+}  // namespace
+}  // namespace hpm
