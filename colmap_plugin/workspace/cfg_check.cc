@@ -128,12 +128,6 @@ void CheckCfg(const Workspace& workspace,
                         : "",
                     kRightForm));
   }
-  if (cfg.entries.empty() && cfg.unpaired.text.empty()) {
-    log(LogLevel::kWarning,
-        fmt::format("{} lists no image, so there is nothing to compute; {}",
-                    path.string(),
-                    kRightForm));
-  }
 }
 
 }  // namespace hpm

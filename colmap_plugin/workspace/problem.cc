@@ -216,7 +216,8 @@ class ProblemReader {
   }
 
   void CheckSourceNames(const PatchMatchCfgEntry& entry) const {
-    for (const std::string& name : entry.src_names) IndexOf(name, entry.line);
+    for (const std::string& name : entry.src_names)
+      IndexOf(name, entry.src_line);
   }
 
   // With images that have no picture; for "__auto__, N" so many that N have

@@ -329,6 +329,43 @@ TEST_F(ControllerTest, AnUnreadableImageIsPlannedWithoutAndComesBack) {
   EXPECT_EQ(Depth(0, "geometric"), without);
 }
 
+// The same where another image takes the place of the damaged one among the
+// sources, and gets maps of its own that nobody asked for before.
+TEST_F(ControllerTest, AnUnreadableSourceOfAFewReferencesIsReplaced) {
+  const std::filesystem::path cfg = scene_.path() / "stereo/patch-match.cfg";
+  WriteFile(cfg, ViewName(0) + "\n__auto__, 1\n");
+  options_.hpm.num_geom_passes = 2;
+  Run();
+  const std::vector<float> whole = Depth(0, "geometric");
+  int source = 0;
+  std::string good;
+  const auto file = [&] { return scene_.path() / "images" / ViewName(source); };
+  // Which one it is shows when it is damaged.
+  for (std::vector<float> without = whole; without == whole;) {
+    if (source > 0) WriteFile(file(), good);
+    ASSERT_LT(++source, kNumImages);
+    good = ReadFile(file());
+    WriteFile(file(), good.substr(0, 60) + std::string(good.size() - 60, 'x'));
+    for (const bool overwrite : {true, false}) {
+      options_.hpm.overwrite = overwrite;
+      const RunSummary summary = Run();
+      EXPECT_THAT(summary.failed, testing::IsEmpty());
+      EXPECT_EQ(summary.num_problems, 1);
+      EXPECT_EQ(summary.num_computed, overwrite ? 1 : 0);
+      EXPECT_THAT(InnerFolders(), testing::IsEmpty());
+    }
+    without = Depth(0, "geometric");
+  }
+  const std::vector<float> without = Depth(0, "geometric");
+  WriteFile(file(), good);
+  EXPECT_EQ(Run().num_computed, 1);
+  EXPECT_EQ(Depth(0, "geometric"), whole);
+
+  std::filesystem::remove(file());
+  EXPECT_EQ(Run().num_computed, 1);
+  EXPECT_EQ(Depth(0, "geometric"), without);
+}
+
 TEST_F(ControllerTest, ASourceThatIsNoReferenceIsNoFailure) {
   WriteFile(scene_.path() / "stereo/patch-match.cfg",
             ViewName(0) + "\n__all__\n" + ViewName(2) + "\n__all__\n");

@@ -106,12 +106,10 @@ TEST_F(ProblemTest, OneSourceEachIsNoListOfNames) {
   EXPECT_THAT(files_.Warnings(), IsEmpty());
 }
 
-TEST_F(ProblemTest, AMissingOrEmptyFileTellsWhatBelongsIntoIt) {
+TEST_F(ProblemTest, AMissingFileTellsWhatBelongsIntoIt) {
   const auto error = ErrorOf([&] { ReadProblems(files_.Open(), {}, nullptr); });
   ASSERT_TRUE(error);
   EXPECT_THAT(error->what(), HasSubstr("patch-match.cfg is missing"));
-  EXPECT_THAT(Read("# nothing\n"), IsEmpty());
-  EXPECT_THAT(files_.Warnings(), ElementsAre(HasSubstr("lists no image")));
 }
 
 TEST_F(ProblemTest, ImagesWithoutPictureAreNoSourcesAndFailAsReferences) {
@@ -153,7 +151,7 @@ TEST_F(ProblemTest, ReferenceAndRepeatsAreNoSources) {
 
 TEST_F(ProblemTest, ImagesWithoutSourcesAreSkippedWithAWarning) {
   const auto problems =
-      Read("4.jpg\n__auto__, 20\n0.jpg\n0.jpg\n1.jpg\n2.jpg\n");
+      Read("4.jpg\n__auto__, 20\n0.jpg\n0.jpg\n1.jpg\n2.jpg, 3.jpg\n");
   ASSERT_EQ(problems.size(), 1u);
   EXPECT_EQ(problems[0].ref_image, 1);
   EXPECT_THAT(files_.Warnings(),
@@ -317,6 +315,18 @@ TEST_F(WithoutTracksTest, AnImageWithoutTracksHelpsTheOthers) {
   EXPECT_THAT(problems[0].src_images, ElementsAre(5, 8, 7, testing::_));
   EXPECT_THAT(problems[1].src_images, ElementsAre(5, 6));
   EXPECT_THAT(files_.Warnings(), IsEmpty());
+}
+
+TEST_F(WithoutTracksTest, TheNumberOfSourcesIsMetWithImagesThatHaveAPicture) {
+  for (const char* name : {"5.jpg", "7.jpg"}) files_.LeaveOutFile(name);
+  files_.WriteCfg("6.jpg\n__auto__, 4\n5.jpg\n__auto__, 4\n");
+  const Workspace workspace = files_.Open();
+  const auto problems = ReadProblems(workspace, {}, files_.Log());
+  ASSERT_EQ(problems.size(), 2u);
+  EXPECT_THAT(problems[0].src_images,
+              testing::UnorderedElementsAre(3, 4, 8, 9));
+  EXPECT_EQ(problems[1].src_images.size(), 4u);
+  EXPECT_FALSE(CanBeComputed(workspace, problems[1]));
 }
 
 TEST_F(WithoutTracksTest, TracksOfOneImageDoNotHelpFusion) {
