@@ -57,18 +57,18 @@ TEST(DepthRange, GivenRangeHoldsForAllImagesEvenWithoutPoints) {
 TEST(DepthRange, AGivenRangeIsSearchedBeyondAsFarAsThePointsGo) {
   TestWorkspace files;
   files.AddImage("a.jpg", {0, 0, 0});
-  files.AddPoint({0, 0, 4}, {0});
-  files.AddPoint({0, 0, 8}, {0});
+  for (int i = 0; i < kEnoughPoints; ++i)
+    files.AddPoint({0, 0, i % 2 == 0 ? 4.0 : 8.0}, {0});
   const Workspace workspace = files.Open();
   const DepthRanges inner(workspace, 4, 5);
-  EXPECT_FLOAT_EQ(inner.ForImage(0).min, 3);
-  EXPECT_FLOAT_EQ(inner.ForImage(0).max, 10);
+  EXPECT_FLOAT_EQ(inner.ForImage(0)->min, 3);
+  EXPECT_FLOAT_EQ(inner.ForImage(0)->max, 10);
   EXPECT_FLOAT_EQ(inner.Published().min, 4);
   EXPECT_FLOAT_EQ(inner.Published().max, 5);
-  const DepthRange apart = DepthRanges(workspace, 1, 2).ForImage(0);
+  const DepthRange apart = *DepthRanges(workspace, 1, 2).ForImage(0);
   EXPECT_FLOAT_EQ(apart.min, 1);
   EXPECT_FLOAT_EQ(apart.max, 8);  // far points may be wrong: 4 times
-  const DepthRange beyond = DepthRanges(workspace, 20, 30).ForImage(0);
+  const DepthRange beyond = *DepthRanges(workspace, 20, 30).ForImage(0);
   EXPECT_FLOAT_EQ(beyond.min, 5);
   EXPECT_FLOAT_EQ(beyond.max, 30);
 }

@@ -1,5 +1,6 @@
 #include "colmap_plugin/workspace/source_problems.h"
 
+#include "colmap_plugin/workspace/depth_range.h"
 #include "tests/colmap_plugin/workspace/test_workspace.h"
 
 namespace hpm {
@@ -15,8 +16,8 @@ class SourceProblemsTest : public testing::Test {
   SourceProblemsTest() {
     for (int i = 0; i < 5; ++i)
       files_.AddImage(fmt::format("{}.jpg", i), {0.5 * i, 0, 0});
-    for (int i = 0; i < 2; ++i)
-      files_.AddPoint({0.5 * i, 0, 4}, {i, i + 1, i + 2});
+    for (int i = 0; i < 2 * static_cast<int>(kEnoughPoints); ++i)
+      files_.AddPoint({0.5 * (i % 2), 0, 4}, {i % 2, i % 2 + 1, i % 2 + 2});
   }
 
   std::vector<StereoProblem> SourcesOf(const std::string& cfg,
@@ -31,7 +32,7 @@ class SourceProblemsTest : public testing::Test {
 };
 
 TEST_F(SourceProblemsTest, AreAddedForSourcesThatAreNoReferences) {
-  const auto problems = SourcesOf("0.jpg\n__auto__, 20\n");
+  const auto problems = SourcesOf("0.jpg\n__auto__, 2\n");
   ASSERT_EQ(problems.size(), 2u);
   EXPECT_EQ(problems[0].ref_image, 1);
   EXPECT_EQ(problems[1].ref_image, 2);
