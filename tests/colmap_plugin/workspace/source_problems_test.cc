@@ -67,7 +67,7 @@ TEST_F(SourceProblemsTest, TakeNoMoreSourcesThanAllowed) {
 
 TEST_F(SourceProblemsTest, ImagesWithoutPictureHaveNoneAndAreNoSources) {
   files_.LeaveOutFile("2.jpg");
-  const auto problems = SourcesOf("0.jpg\n__auto__, 20\n2.jpg\n3.jpg, 4.jpg\n");
+  const auto problems = SourcesOf("0.jpg\n__auto__, 1\n2.jpg\n3.jpg, 4.jpg\n");
   // Nor has the reference without picture brought its own along.
   ASSERT_EQ(problems.size(), 1u);
   EXPECT_EQ(problems[0].ref_image, 1);
