@@ -14,6 +14,7 @@
 #include "colmap_plugin/workspace/run_lock.h"
 #include "colmap_plugin/workspace/run_record.h"
 #include "colmap_plugin/workspace/source_problems.h"
+#include "colmap_plugin/workspace/stamp.h"
 #include "src/base/error.h"
 #include "src/cpu/cpu_backend.h"
 #include "src/engine/memory_plan.h"
@@ -89,15 +90,27 @@ double WorkOf(const StagePlan& plan, int stage, const StereoProblem& problem) {
   return static_cast<double>(iterations) * camera.width * camera.height;
 }
 
-// Maps between stages are of no use once the result is complete.
-void RemoveInnerMaps(const Workspace& workspace, const StagePlan& plan) {
-  for (const Stage& stage : plan.stages()) {
-    std::error_code ignored;
-    std::filesystem::remove_all(workspace.StatePath() / NameForSources(stage),
-                                ignored);
-    if (stage.is_public) continue;
-    std::filesystem::remove_all(workspace.StatePath() / stage.name, ignored);
+// Behind the references, which come first.
+void AddSourceProblems(const Workspace& workspace,
+                       const ProblemOptions& options,
+                       std::vector<StereoProblem>* problems) {
+  for (StereoProblem& problem : SourceProblems(workspace, *problems, options))
+    problems->push_back(std::move(problem));
+}
+
+// From now on a map is finished only if this run made it.
+void ForgetMaps(const Workspace& workspace,
+                const std::vector<StereoProblem>& problems,
+                const StagePlan& plan) {
+  for (int s = 0; s < static_cast<int>(plan.stages().size()); ++s) {
+    for (const StereoProblem& problem : problems) {
+      RemoveStamp(workspace.StatePath(),
+                  workspace.ImageName(problem.ref_image),
+                  plan.NameOf(s, problem.ref_image));
+    }
   }
+  // Those of images that become problems when the run is planned anew, too.
+  RemoveInnerMaps(workspace);
 }
 
 int CountFinalMaps(const Workspace& workspace, const StagePlan& plan) {
@@ -156,18 +169,14 @@ RunSummary PatchMatchController::Run() {
   WarnOfFarOrigin(workspace, problems, log_);
 
   const bool geometric = options_.patch_match.geom_consistency;
-  if (geometric) {
-    for (StereoProblem& problem :
-         SourceProblems(workspace, problems, problem_options))
-      problems.push_back(std::move(problem));
-  }
+  if (geometric) AddSourceProblems(workspace, problem_options, &problems);
   if (options_.hpm.num_levels <= 0) {
     options_.hpm.num_levels =
         LevelsOf(FindMethod(options_.hpm.method), workspace);
   }
   const Schedule schedule = MakeSchedule(MakeScheduleOptions(options_));
-  const StagePlan plan(workspace, problems, schedule, options_);
-  PrepareOutputs(workspace, problems, BytesToWrite(problems, plan));
+  StagePlan plan(workspace, problems, schedule, options_);
+  PrepareOutputs(workspace, problems, BytesToWrite(problems, plan), log_);
   const int num_sources = CountNeededSources(problems, plan);
   if (num_sources > 0) {
     log_(
@@ -175,11 +184,6 @@ RunSummary PatchMatchController::Run() {
         fmt::format("{} further images are estimated, because they are sources "
                     "of these; their maps are not published",
                     num_sources));
-  }
-  if (plan.ReplacesForeignMaps()) {
-    log_(LogLevel::kWarning,
-         "maps made with other options or by another program are computed "
-         "anew");
   }
 
   if (!geometric) {
@@ -209,8 +213,7 @@ RunSummary PatchMatchController::Run() {
                     PlanCacheBytes(CacheBytes(options_.patch_match.cache_size),
                                    needs.working,
                                    needs.inputs,
-                                   MemoryLimit()),
-                    log_);
+                                   MemoryLimit()));
   log_(LogLevel::kInfo,
        fmt::format("{}{}, method {}, about {} MB of memory",
                    backend_name,
@@ -237,23 +240,41 @@ RunSummary PatchMatchController::Run() {
       options_.hpm.device != "cuda",
       log_);
   RunStatistics statistics;
-  try {
-    RunStages(workspace, problems, plan, &inputs, &workers, stop, &statistics);
-  } catch (const Error& error) {
-    if (error.code() == ErrorCode::kInterrupted) lock.ThrowIfLost();
-    throw;
+  if (options_.hpm.overwrite) {
+    lock.ThrowIfLost();
+    ForgetMaps(workspace, problems, plan);
   }
-  lock.ThrowIfLost();
-  if (!statistics.AnyFailed()) {
-    RemoveInnerMaps(workspace, plan);
-    CutInputMaps(workspace, problems, plan);
-  }
-
-  if (!options_.patch_match.allow_missing_files) {
-    for (const std::string& name : inputs.UnreadableImages()) {
-      statistics.AddFailure(name);
+  for (bool is_done = false; !is_done;) {
+    for (const StereoProblem& problem : problems) {
+      // What is wrong was said when it was found.
+      if (problem.is_reference && !CanBeComputed(workspace, problem))
+        statistics.AddFailure(workspace.ImageName(problem.ref_image));
+    }
+    try {
+      RunStages(
+          workspace, problems, plan, &inputs, &workers, stop, &statistics);
+      is_done = true;
+    } catch (const UnreadableImage& error) {
+      // Planned anew without it, so that all maps are those of a run that knew
+      // it from the start; what is made already and does not need it stays.
+      lock.ThrowIfLost();
+      log_(LogLevel::kWarning, error.what());
+      workspace.DropPicture(error.image());
+      // The references are the same: those that cannot be computed stay as
+      // problems.
+      problems = ReadProblems(workspace, problem_options, nullptr);
+      if (geometric) AddSourceProblems(workspace, problem_options, &problems);
+      options_.hpm.overwrite = false;
+      plan.Update();
+    } catch (const Error& error) {
+      if (error.code() == ErrorCode::kInterrupted) lock.ThrowIfLost();
+      throw;
     }
   }
+  lock.ThrowIfLost();
+  RemoveInnerMaps(workspace);
+  if (!statistics.AnyFailed()) CutInputMaps(workspace, problems, plan);
+
   std::vector<std::string> names;
   for (size_t p = 0; p < num_references; ++p)
     names.push_back(workspace.ImageName(problems[p].ref_image));
@@ -322,11 +343,6 @@ void PatchMatchController::RunStages(const Workspace& workspace,
         if (statistics->HasFailed(name) || failed_sources.count(p) > 0) return;
       }
       const bool is_reference = problems[p].is_reference;
-      if (!is_reference && inputs->Image(problems[p].ref_image) == nullptr) {
-        const std::lock_guard<std::mutex> lock(mutex);
-        failed_sources.insert(p);  // which the cache has told
-        return;
-      }
       const std::string stage_name = plan.NameOf(s, problems[p].ref_image);
       log_(LogLevel::kInfo,
            fmt::format("Processing view {} / {} for {} ({})",
@@ -340,6 +356,12 @@ void PatchMatchController::RunStages(const Workspace& workspace,
       try {
         const StageResult result = runner->Run(s, p, control);
         const std::lock_guard<std::mutex> lock(mutex);
+        // Not before: an image that cannot be decoded changes the plan.
+        if (!statistics->AnyWork() && plan.ReplacesForeignMaps()) {
+          log_(LogLevel::kWarning,
+               "maps made with other options or by another program are "
+               "computed anew");
+        }
         statistics->Add(name,
                         is_reference,
                         stage,
@@ -347,7 +369,8 @@ void PatchMatchController::RunStages(const Workspace& workspace,
                         plan.CameraOf(s, problems[p].ref_image),
                         result);
       } catch (const Error& error) {
-        if (error.code() != ErrorCode::kBadInput) {
+        if (error.code() != ErrorCode::kBadInput ||
+            dynamic_cast<const UnreadableImage*>(&error) != nullptr) {
           const std::lock_guard<std::mutex> lock(mutex);
           --number;
           done_work -= counted;

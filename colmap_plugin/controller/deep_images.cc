@@ -30,8 +30,10 @@ std::vector<DeepImage> DeepImagesOf(const Workspace& workspace) {
   std::vector<DeepImage> images;
   for (int i = 0; i < workspace.num_images(); ++i) {
     const std::optional<ImageSize>& size = workspace.file_size(i);
-    if (!workspace.usable(i) || !size || size->depth == SampleDepth::k8)
+    if (!workspace.usable(i) || !workspace.has_picture(i) || !size ||
+        size->depth == SampleDepth::k8) {
       continue;
+    }
     const fs::path path = workspace.ImagePath(i);
     std::error_code ignored;
     const std::string key =

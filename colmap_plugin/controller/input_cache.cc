@@ -1,7 +1,6 @@
 #include "colmap_plugin/controller/input_cache.h"
 
 #include "colmap_plugin/controller/ray_convention.h"
-#include "src/base/error.h"
 #include "src/image/load_image.h"
 #include "src/image/shrink_image.h"
 
@@ -18,16 +17,13 @@ int64_t KeyOf(Input input, int image) {
 
 }  // namespace
 
-InputCache::InputCache(const Workspace& workspace,
-                       uint64_t max_bytes,
-                       LogSink log)
-    : workspace_(workspace), log_(std::move(log)), inputs_(max_bytes) {}
+InputCache::InputCache(const Workspace& workspace, uint64_t max_bytes)
+    : workspace_(workspace), inputs_(max_bytes) {}
 
 std::shared_ptr<const GrayImage> InputCache::Image(int image) {
   int level;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (unreadable_.count(image) > 0) return nullptr;
     if (auto cached = inputs_.Find(KeyOf(Input::kImage, image)))
       return std::static_pointer_cast<const GrayImage>(cached);
     level = level_;
@@ -44,11 +40,7 @@ std::shared_ptr<const GrayImage> InputCache::Image(int image) {
     inputs_.Insert(KeyOf(Input::kImage, image), loaded, loaded->data.size());
     return loaded;
   } catch (const Error& error) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (unreadable_.insert(image).second) {
-      log_(LogLevel::kWarning, error.what());
-    }
-    return nullptr;
+    throw UnreadableImage(image, error.what());
   }
 }
 
@@ -74,14 +66,6 @@ void InputCache::StartStage(int level) {
   const std::lock_guard<std::mutex> lock(mutex_);
   inputs_.Clear();
   level_ = level;
-}
-
-std::vector<std::string> InputCache::UnreadableImages() const {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  std::vector<std::string> names;
-  for (const int image : unreadable_)
-    names.push_back(workspace_.ImageName(image));
-  return names;
 }
 
 }  // namespace hpm

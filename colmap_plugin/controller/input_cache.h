@@ -1,28 +1,37 @@
 // Images and depth maps of the workspace, read when needed and kept within a
-// bound; images that cannot be read are remembered and reported once. All
-// methods may be called from several threads.
+// bound. All methods may be called from several threads.
 #pragma once
 
 #include "colmap_plugin/controller/stages.h"
-#include "src/base/log.h"
+#include "src/base/error.h"
 #include "src/engine/lru_cache.h"
 #include "src/image/gray_image.h"
 #include "src/image/inverse_depth_map.h"
 
 #include <memory>
 #include <mutex>
-#include <set>
 #include <string>
-#include <vector>
 
 namespace hpm {
 
+// An image file that only decoding found to be damaged. The plan of the run
+// counted on it.
+class UnreadableImage : public Error {
+ public:
+  UnreadableImage(int image, const std::string& message)
+      : Error(ErrorCode::kBadInput, message), image_(image) {}
+  int image() const { return image_; }
+
+ private:
+  int image_;
+};
+
 class InputCache {
  public:
-  InputCache(const Workspace& workspace, uint64_t max_bytes, LogSink log);
+  InputCache(const Workspace& workspace, uint64_t max_bytes);
 
-  // At the size of the camera, halved as the stage wants it; null if the file
-  // cannot be read.
+  // At the size of the camera, halved as the stage wants it. Throws
+  // UnreadableImage.
   std::shared_ptr<const GrayImage> Image(int image);
 
   // 1/z at pixel centres of an image's maps; null if they are absent or
@@ -35,17 +44,12 @@ class InputCache {
   // from now on.
   void StartStage(int level);
 
-  // Names of the images that could not be read so far.
-  std::vector<std::string> UnreadableImages() const;
-
  private:
   const Workspace& workspace_;
-  LogSink log_;
   // Held to look up and to keep, not to read: threads decode side by side.
-  mutable std::mutex mutex_;
+  std::mutex mutex_;
   int level_ = 0;
   LruCache<int64_t, void> inputs_;  // GrayImage or InverseDepthMap; see KeyOf
-  std::set<int> unreadable_;
 };
 
 }  // namespace hpm

@@ -29,6 +29,8 @@ class RunStatistics {
   }
   bool AnyFailed() const { return !failed_.empty(); }
   bool AnyComputed() const { return !computed_.empty(); }
+  // Images that are only sources count here.
+  bool AnyWork() const { return !worked_on_.empty(); }
 
   // problem_images: names of all reference images of the run.
   RunSummary Summarize(const std::vector<std::string>& problem_images,

@@ -96,12 +96,6 @@ ViewSet StageRunner::MakeViews(int stage, int problem) {
   const StageSpec& spec = plan_.stages()[stage].spec;
   views.ref = {
       plan_.CameraOf(stage, p.ref_image), inputs_->Image(p.ref_image), nullptr};
-  if (views.ref.image == nullptr) {
-    throw Error(ErrorCode::kBadInput,
-                workspace_.ImagePath(p.ref_image).string() +
-                    ": cannot be read, so there are no maps for it; undistort "
-                    "the images again");
-  }
   views.depth_min = kDepthMinSlack * p.depth_min;
   views.depth_max = kDepthMaxSlack * p.depth_max;
   views.random_key = RandomKey(options_.random_seed, name);
@@ -113,7 +107,6 @@ ViewSet StageRunner::MakeViews(int stage, int problem) {
     View view = {plan_.CameraAround(stage, src, p.ref_image),
                  inputs_->Image(src),
                  nullptr};
-    if (view.image == nullptr) continue;
     if (spec.geometric) {
       if (plan_.HasCurrentMaps(stage - 1, src)) {
         view.inverse_depth = inputs_->InverseDepth(
@@ -127,12 +120,6 @@ ViewSet StageRunner::MakeViews(int stage, int problem) {
     }
     views.srcs.push_back(std::move(view));
     src_images_.push_back(src);
-  }
-  if (views.srcs.empty()) {
-    throw Error(ErrorCode::kBadInput,
-                workspace_.ImagePath(p.ref_image).string() +
-                    ": none of its source images can be read; undistort the "
-                    "images again");
   }
   return views;
 }

@@ -35,8 +35,8 @@ class StageRunner {
               Backend* backend,
               const LogSink& log);
 
-  // Throws Error(kBadInput) if the reference or all of its sources cannot be
-  // read, Error(kLocked) instead of publishing when the lock is lost.
+  // Throws UnreadableImage if the reference or a source cannot be decoded,
+  // Error(kLocked) instead of publishing when the lock is lost.
   StageResult Run(int stage, int problem, const RunControl& control);
 
  private:

@@ -16,6 +16,14 @@ namespace {
 // Raise when the same options give other maps.
 constexpr int kAlgorithmVersion = 7;
 
+constexpr const char* kLevelPrefix = "level_";
+constexpr const char* kGeometricPrefix = "geometric_";
+constexpr const char* kSourcePrefix = "source_";
+
+bool StartsWith(const std::string& text, const char* prefix) {
+  return text.rfind(prefix, 0) == 0;
+}
+
 std::vector<Stage> MakeStages(const Schedule& schedule) {
   std::vector<Stage> stages;
   int num_geometric = 0;
@@ -23,10 +31,10 @@ std::vector<Stage> MakeStages(const Schedule& schedule) {
     Stage stage;
     stage.spec = spec;
     if (spec.level > 0) {
-      stage.name = "level_" + std::to_string(spec.level) + "_";
+      stage.name = kLevelPrefix + std::to_string(spec.level) + "_";
     }
     if (spec.geometric) {
-      stage.name += "geometric_" + std::to_string(++num_geometric);
+      stage.name += kGeometricPrefix + std::to_string(++num_geometric);
     } else {
       num_geometric = 0;
       stage.name += "photometric";
@@ -136,7 +144,7 @@ std::string OwnFingerprint(const Workspace& workspace,
 }  // namespace
 
 std::string NameForSources(const Stage& stage) {
-  return "source_" + stage.name;
+  return kSourcePrefix + stage.name;
 }
 
 StagePlan::StagePlan(const Workspace& workspace,
@@ -147,18 +155,25 @@ StagePlan::StagePlan(const Workspace& workspace,
       problems_(problems),
       options_(options),
       stages_(MakeStages(schedule)) {
+  Update();
+}
+
+void StagePlan::Update() {
+  const std::vector<StereoProblem>& problems = problems_;
   const int num_stages = static_cast<int>(stages_.size());
   const int num_problems = static_cast<int>(problems.size());
-  problem_of_image_.assign(workspace.num_images(), -1);
+  problem_of_image_.assign(workspace_.num_images(), -1);
   for (int p = 0; p < num_problems; ++p)
     problem_of_image_[problems[p].ref_image] = p;
 
+  fingerprints_.clear();
+  found_foreign_maps_ = false;
   for (int s = 0; s < num_stages; ++s) {
     fingerprints_.emplace_back();
     for (int p = 0; p < num_problems; ++p) {
       Fingerprint hash;
       hash.AddString(
-          OwnFingerprint(workspace, problems[p], stages_[s], options));
+          OwnFingerprint(workspace_, problems[p], stages_[s], options_));
       if (s > 0) {
         hash.AddString(fingerprints_[s - 1][p]);
         for (const int src : problems[p].src_images) {
@@ -185,10 +200,14 @@ StagePlan::StagePlan(const Workspace& workspace,
       }
     }
     for (int p = 0; p < num_problems; ++p) {
-      if (!wanted[p] && !IsPublic(s, problems[p].ref_image)) continue;
-      needed_[s][p] = options.hpm.overwrite || !IsFinished(s, p, !wanted[p]);
+      if (!CanBeComputed(workspace_, problems[p]) ||
+          (!wanted[p] && !IsPublic(s, problems[p].ref_image))) {
+        continue;
+      }
+      needed_[s][p] = options_.hpm.overwrite || !IsFinished(s, p, !wanted[p]);
     }
   }
+  replaces_foreign_maps_ = replaces_foreign_maps_ && found_foreign_maps_;
 }
 
 int StagePlan::CountNeeded(int s) const {
@@ -257,7 +276,7 @@ bool StagePlan::IsFinished(int s, int p, bool may_be_cut) {
   }
   if (!HasCompleteMaps(s, image)) {
     const bool is_cut = StampOf(s, image) == CutFingerprintOf(s, p);
-    if (!is_cut) replaces_foreign_maps_ = true;
+    if (!is_cut) found_foreign_maps_ = true;
     if (!is_cut || !may_be_cut) return false;
   }
   const Camera camera = CameraOf(s, image);
@@ -277,6 +296,22 @@ bool StagePlan::IsFinished(int s, int p, bool may_be_cut) {
   } catch (const Error&) {
     return false;  // torn or damaged: made anew
   }
+}
+
+void RemoveInnerMaps(const Workspace& workspace) {
+  std::error_code error;
+  std::vector<std::filesystem::path> folders;
+  for (std::filesystem::directory_iterator it(workspace.StatePath(), error),
+       end;
+       !error && it != end;
+       it.increment(error)) {
+    const std::string name = it->path().filename().string();
+    for (const char* prefix : {kLevelPrefix, kGeometricPrefix, kSourcePrefix}) {
+      if (StartsWith(name, prefix)) folders.push_back(it->path());
+    }
+  }
+  for (const std::filesystem::path& folder : folders)
+    std::filesystem::remove_all(folder, error);
 }
 
 }  // namespace hpm

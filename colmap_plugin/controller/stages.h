@@ -34,18 +34,25 @@ struct StageFiles {
 
 class StagePlan {
  public:
-  // Looks at the files of the workspace; computes nothing.
+  // Looks at the files of the workspace; computes nothing. Keeps references to
+  // workspace, problems and options.
   StagePlan(const Workspace& workspace,
             const std::vector<StereoProblem>& problems,
             const Schedule& schedule,
             const ControllerOptions& options);
 
+  // Plans anew after the problems, of the same references, or the options
+  // changed.
+  void Update();
+
   const std::vector<Stage>& stages() const { return stages_; }
-  // Whether problem p has to be computed in stage s: its final maps, or maps
-  // that others still need, are missing, damaged or made with other options.
+  // Whether problem p has to be computed in stage s, and can be: its final
+  // maps, or maps that others still need, are missing, damaged or made with
+  // other options.
   bool IsNeeded(int s, int p) const { return needed_[s][p]; }
   int CountNeeded(int s) const;
-  // True if maps exist that were made with other options or by another program.
+  // True if maps exist that were made with other options or by another program,
+  // in the eyes of all plans so far.
   bool ReplacesForeignMaps() const { return replaces_foreign_maps_; }
   const std::string& FingerprintOf(int s, int p) const {
     return fingerprints_[s][p];
@@ -93,7 +100,13 @@ class StagePlan {
   std::vector<int> problem_of_image_;
   std::vector<std::vector<std::string>> fingerprints_;  // [stage][problem]
   std::vector<std::vector<bool>> needed_;               // [stage][problem]
-  bool replaces_foreign_maps_ = false;
+  bool found_foreign_maps_ = false;                     // by the newest plan
+  bool replaces_foreign_maps_ = true;  // until a plan finds none
 };
+
+// Removes the maps between stages, of any run: once all was made that can be,
+// they are of no use. A later run that lacks some result makes those it needs
+// again, to the same bytes.
+void RemoveInnerMaps(const Workspace& workspace);
 
 }  // namespace hpm

@@ -19,11 +19,15 @@ namespace hpm {
 namespace fs = std::filesystem;
 namespace {
 
+constexpr size_t kMaxHostLength = 64;
+
 // ".tmp.<host>." : what a temporary of this host has before the process id.
+// The host's name is cut so that temporaries stay short on any system.
 std::string TemporaryInfix() {
   char host[256] = {};
   if (gethostname(host, sizeof(host) - 1) != 0 || host[0] == '\0')
     return ".tmp.localhost.";
+  host[kMaxHostLength] = '\0';
   std::string infix = fmt::format(".tmp.{}.", host);
   std::replace(infix.begin(), infix.end(), '/', '_');
   return infix;
@@ -39,6 +43,17 @@ std::string FreeSpace(const fs::path& folder) {
 
 fs::path ParentFolder(const fs::path& path) {
   return path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
+
+// Made from a hash of the file's name (FNV-1a), not from the name itself, which
+// may be as long as the disk allows. A process that died with the same id left
+// the same name, which is then replaced.
+fs::path TemporaryBeside(const fs::path& path) {
+  uint64_t hash = 0xcbf29ce484222325u;
+  for (const char c : path.filename().string())
+    hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+  return ParentFolder(path) /
+         fmt::format("hpm_{:016x}{}{}", hash, TemporaryInfix(), getpid());
 }
 
 int OpenTemporary(const fs::path& path) {
@@ -63,8 +78,7 @@ AtomicFile::AtomicFile(const fs::path& path) : path_(path) {
   std::error_code error;
   fs::create_directories(ParentFolder(path), error);
   if (error) Throw("create the folder of", error.value());
-  const fs::path temporary =
-      path.string() + TemporaryInfix() + std::to_string(getpid());
+  const fs::path temporary = TemporaryBeside(path);
   fd_ = OpenTemporary(temporary);
   if (fd_ < 0 && errno == EEXIST) {
     // Left by a dead process that had the same id (usual in containers), or a

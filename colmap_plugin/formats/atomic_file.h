@@ -15,8 +15,8 @@ namespace hpm {
 // One writer per path at a time within a process.
 class AtomicFile {
  public:
-  // Creates missing parent folders. The temporary is "<path>.tmp.<host>.<pid>",
-  // opened with O_EXCL | O_NOFOLLOW.
+  // Creates missing parent folders. The temporary lies beside the file as
+  // "hpm_<hash of its name>.tmp.<host>.<pid>", opened with O_EXCL | O_NOFOLLOW.
   explicit AtomicFile(const std::filesystem::path& path);
   ~AtomicFile();  // removes the temporary unless Commit() succeeded
   AtomicFile(const AtomicFile&) = delete;

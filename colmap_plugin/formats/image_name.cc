@@ -40,6 +40,13 @@ void CheckImageName(const std::string& name) {
   }
 }
 
+bool IsImageName(std::string_view name) { return FaultOfName(name) == nullptr; }
+
+std::string WithSlashes(std::string name) {
+  std::replace(name.begin(), name.end(), '\\', '/');
+  return name;
+}
+
 std::string QuotedName(std::string_view name) {
   constexpr size_t kMaxLength = 100;
   std::string quoted = "'";

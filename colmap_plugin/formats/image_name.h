@@ -11,6 +11,12 @@ namespace hpm {
 // ("a/", "a/.") and for control characters. Nested folders are legal.
 void CheckImageName(const std::string& name);
 
+// Whether CheckImageName() accepts the name.
+bool IsImageName(std::string_view name);
+
+// Names written on Windows have backslashes where others have '/'.
+std::string WithSlashes(std::string name);
+
 // For messages: quoted, control characters as \xNN, cut at 100 bytes.
 std::string QuotedName(std::string_view name);
 

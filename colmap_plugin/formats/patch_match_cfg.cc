@@ -99,24 +99,30 @@ std::string FormatSources(const std::filesystem::path& path,
 
 }  // namespace
 
-std::vector<PatchMatchCfgEntry> ReadPatchMatchCfg(
-    const std::filesystem::path& path) {
+PatchMatchCfg ReadPatchMatchCfg(const std::filesystem::path& path) {
   LineReader lines(path);
-  std::vector<PatchMatchCfgEntry> entries;
+  PatchMatchCfg cfg;
   PatchMatchCfgEntry entry;
   while (lines.Next()) {
     const std::string_view line = lines.line();
-    if (line.empty() || line.front() == '#') continue;
-    if (entry.ref_name.empty()) {
-      entry.ref_name = line;
-      entry.line = static_cast<int>(lines.place());
+    const int number = static_cast<int>(lines.place());
+    if (line.empty()) continue;
+    if (line.front() == '#') {
+      cfg.comments.push_back({std::string(line), number});
       continue;
     }
+    if (entry.ref_name.empty()) {
+      entry.ref_name = line;
+      entry.line = number;
+      continue;
+    }
+    entry.src_line = number;
     ParseSources(lines, &entry);
-    entries.push_back(std::move(entry));
+    cfg.entries.push_back(std::move(entry));
     entry = PatchMatchCfgEntry();
   }
-  return entries;
+  cfg.unpaired = {entry.ref_name, entry.line};
+  return cfg;
 }
 
 void WritePatchMatchCfg(const std::filesystem::path& path,

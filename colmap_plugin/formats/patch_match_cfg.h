@@ -22,14 +22,27 @@ struct PatchMatchCfgEntry {
   int max_num_auto = 0;  // kAuto: N of "__auto__, N"; negative = unlimited
   std::vector<std::string>
       src_names;  // kList, in file order, may repeat or be empty
-  int line = 0;   // 1-based line of the reference, for messages
+  // 1-based, for messages.
+  int line = 0;      // of the reference
+  int src_line = 0;  // of its sources
 };
 
-// A trailing reference without source line is dropped, as COLMAP does. A byte
-// order mark is dropped (COLMAP would take it for a part of the first name).
-// Throws Error(kBadInput) with file and line.
-std::vector<PatchMatchCfgEntry> ReadPatchMatchCfg(
-    const std::filesystem::path& path);
+struct PatchMatchCfgLine {
+  std::string text;
+  int line = 0;  // 1-based
+};
+
+struct PatchMatchCfg {
+  std::vector<PatchMatchCfgEntry> entries;
+  // What COLMAP drops without a word: lines that begin with '#', and a last
+  // reference without source line (empty if there is none).
+  std::vector<PatchMatchCfgLine> comments;
+  PatchMatchCfgLine unpaired;
+};
+
+// A byte order mark is dropped (COLMAP would take it for a part of the first
+// name). Throws Error(kBadInput) with file and line.
+PatchMatchCfg ReadPatchMatchCfg(const std::filesystem::path& path);
 
 // Both atomic; throw Error(kBadInput) for a name that the file cannot express.
 void WritePatchMatchCfg(const std::filesystem::path& path,

@@ -86,11 +86,20 @@ SparseModel ReadSparseModel(const fs::path& folder, const LogSink& log) {
   for (const Encoding* encoding : {&kBinary, &kText}) {
     if (IsComplete(folder, *encoding)) return Read(folder, *encoding, log);
   }
+  // The mapper numbers its models; a dense workspace has one, without number.
+  const fs::path numbered = folder / "0";
+  std::string remedy = "run image_undistorter first";
+  if (IsComplete(numbered, kBinary) || IsComplete(numbered, kText)) {
+    remedy = fmt::format(
+        "{} holds one: if its cameras are those of the undistorted images, "
+        "move its files one folder up, where stereo_fusion looks for them too",
+        numbered.string());
+  }
   throw Error(ErrorCode::kBadInput,
               fmt::format("{} holds no complete sparse model (cameras, images "
-                          "and points3D, all "
-                          ".bin or all .txt); run image_undistorter first",
-                          folder.string()));
+                          "and points3D, all .bin or all .txt); {}",
+                          folder.string(),
+                          remedy));
 }
 
 }  // namespace hpm

@@ -51,6 +51,11 @@ struct SparseModel {
   std::vector<SparseImage> images;
   std::vector<SparsePoint>
       points;  // those with non-finite coordinates are left out
+  // Track elements in the file, and those among them of images that the model
+  // does not have (filtered out by a script): they are in no track.
+  uint64_t num_observations = 0;
+  uint64_t num_left_out = 0;
+  uint32_t left_out_example = 0;  // an image id, if there are any
 };
 
 // Reads the binary files if all three exist, else the text files. Where rigs.*

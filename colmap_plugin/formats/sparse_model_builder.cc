@@ -143,11 +143,12 @@ void SparseModelBuilder::AddPoint(
   point.track.reserve(track_image_ids.size());
   for (const uint32_t image_id : track_image_ids) {
     const auto it = image_index_.find(image_id);
-    if (it == image_index_.end()) {
-      cursor.Fail(fmt::format(
-          "point {} is seen by the unknown image {}", id, image_id));
+    ++model_.num_observations;
+    if (it != image_index_.end()) {
+      point.track.push_back(it->second);
+    } else if (model_.num_left_out++ == 0) {
+      model_.left_out_example = image_id;
     }
-    point.track.push_back(it->second);
   }
   point_ids_.emplace_back(id, cursor.place());
   if (xyz.allFinite()) model_.points.push_back(std::move(point));

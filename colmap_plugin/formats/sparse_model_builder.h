@@ -1,7 +1,8 @@
 // Puts the records of a sparse model together and refuses contradictions
-// (repeated or dangling ids). The binary and the text reader feed it in this
-// order: cameras, images, rigs, frames, points. Errors are raised at the cursor
-// of the record.
+// (repeated or dangling ids), but for tracks that name images which are no
+// longer there: those elements are left out and counted. The binary and the
+// text reader feed it in this order: cameras, images, rigs, frames, points.
+// Errors are raised at the cursor of the record.
 #pragma once
 
 #include "colmap_plugin/formats/input_file.h"

@@ -106,8 +106,14 @@ void ReadImagesText(const std::filesystem::path& path,
     Words points(lines.line());
     while (!points.AtEnd()) {
       double xy[2];
-      ReadNumbers(lines, &points, xy, 2, "an image point");
-      ReadNumber<int64_t>(lines, &points, "a point id");
+      ReadNumbers(lines,
+                  &points,
+                  xy,
+                  2,
+                  "the points of the image above (x, y and point id each; an "
+                  "empty line if it has none)");
+      // -1 or 2^64 - 1 stands for none.
+      ReadNumber<double>(lines, &points, "a point id");
     }
   }
 }

@@ -6,6 +6,8 @@
 #include "colmap_plugin/formats/input_file.h"
 
 #include <charconv>
+#include <cmath>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -66,14 +68,35 @@ bool ParseNumber(std::string_view word, T* value) {
   return error == std::errc() && end == word.data() + word.size();
 }
 
+// The whole number that the word is, written as one or as a floating-point
+// number ("400.0", "1.2e+01": what scripts and numpy.savetxt make of it).
+template <class T>
+bool ParseInteger(std::string_view word, T* value) {
+  if (ParseNumber(word, value)) return true;
+  double number;
+  if (!ParseNumber(word, &number) || std::floor(number) != number) return false;
+  // 2^digits is the first that does not fit, and a double.
+  if (number < static_cast<double>(std::numeric_limits<T>::min()) ||
+      number >= std::ldexp(1.0, std::numeric_limits<T>::digits)) {
+    return false;
+  }
+  *value = static_cast<T>(number);
+  return true;
+}
+
 // The next word as a number, or an error at `cursor` that says what was
 // expected.
 template <class T>
 T ReadNumber(const InputCursor& cursor, Words* words, const char* what) {
   T value;
-  if (!ParseNumber(words->Next(), &value)) {
-    cursor.Fail(std::string("expected ") + what);
+  const std::string_view word = words->Next();
+  bool ok;
+  if constexpr (std::is_integral_v<T>) {
+    ok = ParseInteger(word, &value);
+  } else {
+    ok = ParseNumber(word, &value);
   }
+  if (!ok) cursor.Fail(std::string("expected ") + what);
   return value;
 }
 

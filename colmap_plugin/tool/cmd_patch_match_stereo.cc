@@ -16,6 +16,16 @@ namespace {
 
 int ExitCode(ErrorCode code) { return static_cast<int>(code); }
 
+// "a, b, c", or the first ones and how many more.
+std::string ListOf(const std::vector<std::string>& names) {
+  constexpr size_t kMaxNames = 10;
+  if (names.size() <= kMaxNames)
+    return fmt::format("{}", fmt::join(names, ", "));
+  return fmt::format("{} and {} more",
+                     fmt::join(names.begin(), names.begin() + kMaxNames, ", "),
+                     names.size() - kMaxNames);
+}
+
 int RunAndReport(const ControllerOptions& options,
                  const ToolEnvironment& tool,
                  ProgressLine* progress) {
@@ -39,7 +49,7 @@ int RunAndReport(const ControllerOptions& options,
           "{} of {} images failed: {}; the maps of the others are valid",
           summary.failed.size(),
           summary.num_problems,
-          fmt::join(summary.failed, ", ")));
+          ListOf(summary.failed)));
   return ExitCode(ErrorCode::kPartial);
 }
 

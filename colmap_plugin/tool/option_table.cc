@@ -166,8 +166,6 @@ std::vector<OptionSpec> MakeTable() {
              "Source images that must confirm a pixel"),
       Stereo(kColmap, "filter_geom_consistency_max_cost", &P::filter_geom_consistency_max_cost,
              AtLeast(0), "Largest forward-backward reprojection error in pixels of a confirmation"),
-      Stereo(kColmap, "allow_missing_files", &P::allow_missing_files, Anything(),
-             "Leave out source images whose files are missing"),
       Stereo(kColmap, "write_consistency_graph", &P::write_consistency_graph, Anything(),
              "Also write stereo/consistency_graphs"),
 
@@ -196,6 +194,9 @@ std::vector<OptionSpec> MakeTable() {
           "Cap of the reprojection error in the geometric term, in pixels"),
       Hpm(kExpert, "num_levels", &H::num_levels, Between(-1, 8),
           "Levels of the prior hierarchy or image pyramid; -1 or 0: by method and image size"),
+      Stereo(kExpert, "allow_missing_files", &P::allow_missing_files, Anything(),
+             "Leave out source images whose files are missing",
+             "source images without a file are left out in any case, with a warning"),
       Stereo(kExpert, "window_step", &P::window_step, Between(1, 2), "Pixel stride in the window",
              "the stride of the window is part of the method"),
       Stereo(kExpert, "sigma_color", &P::sigma_color, Above(0),

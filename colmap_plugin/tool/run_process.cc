@@ -13,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include <opencv2/core/utils/logger.hpp>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -48,6 +49,8 @@ RunSummary RunStereo(const ControllerOptions& options,
 }  // namespace
 
 int RunProcess(const std::vector<std::string>& arguments) {
+  // What OpenCV would print about a file is said by our own messages.
+  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
   const CancelToken& cancel = InstallSignalHandlers();
   ToolEnvironment tool{&std::cout,
                        &std::cerr,

@@ -193,12 +193,13 @@ std::optional<ImageSize> ReadImageSize(const std::filesystem::path& path) {
   HeaderReader reader(path);
   const uint32_t magic = reader.Read(4, true);
   if (!reader.ok()) return std::nullopt;
-  if (magic >> 16 == 0xffd8) return JpegSize(reader);
-  if (magic == 0x89504e47u) return PngSize(reader);
-  if (magic >> 16 == 0x424d) return BmpSize(reader);
-  if (magic == 0x49492a00u) return TiffSize(reader, /*big_endian=*/false);
-  if (magic == 0x4d4d002au) return TiffSize(reader, /*big_endian=*/true);
-  return DecodedSize(path);
+  std::optional<ImageSize> size;
+  if (magic >> 16 == 0xffd8) size = JpegSize(reader);
+  if (magic == 0x89504e47u) size = PngSize(reader);
+  if (magic >> 16 == 0x424d) size = BmpSize(reader);
+  if (magic == 0x49492a00u) size = TiffSize(reader, /*big_endian=*/false);
+  if (magic == 0x4d4d002au) size = TiffSize(reader, /*big_endian=*/true);
+  return size ? size : DecodedSize(path);
 }
 
 }  // namespace hpm

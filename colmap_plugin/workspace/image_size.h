@@ -1,7 +1,7 @@
 // Width, height and depth of an image file as stored (EXIF rotation ignored, as
 // COLMAP does), without decoding it where the header can be read here: JPEG,
-// PNG, BMP, TIFF. Other types are decoded by OpenCV. The file's first bytes
-// decide, not its extension.
+// PNG, BMP, TIFF. All else is decoded by OpenCV. The file's first bytes decide,
+// not its extension.
 #pragma once
 
 #include <filesystem>

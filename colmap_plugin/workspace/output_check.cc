@@ -1,7 +1,10 @@
 #include "colmap_plugin/workspace/output_check.h"
 
 #include "colmap_plugin/formats/atomic_file.h"
+#include "colmap_plugin/formats/image_name.h"
 #include "colmap_plugin/formats/patch_match_cfg.h"
+#include "colmap_plugin/formats/text_reader.h"
+#include "colmap_plugin/workspace/stamp.h"
 #include "src/base/error.h"
 
 #include <filesystem>
@@ -39,6 +42,55 @@ void CheckFreeSpace(const fs::path& folder, uint64_t num_bytes) {
           num_free));
 }
 
+// Asks the file system itself: what it allows differs from one to another.
+void CheckNameFits(const fs::path& path, const std::string& image_name) {
+  std::error_code error;
+  if (fs::symlink_status(path, error).type() != fs::file_type::none ||
+      error != std::errc::filename_too_long) {
+    return;
+  }
+  throw Error(ErrorCode::kBadInput,
+              fmt::format("the image name {} is too long: {} would have {} "
+                          "bytes, more than this disk allows for the name of a "
+                          "file or for a path; shorten it in the sparse model "
+                          "and rename the image file",
+                          QuotedName(image_name),
+                          QuotedName(path.filename().string()),
+                          path.filename().string().size()));
+}
+
+// stereo_fusion gives up at the first name that the sparse model lacks.
+void CheckFusionCfg(const Workspace& workspace, const LogSink& log) {
+  const fs::path path = workspace.FusionCfgPath();
+  std::string example;
+  int num_names = 0, num_unknown = 0;
+  for (LineReader lines(path); lines.Next();) {
+    const std::string name(lines.line());
+    if (name.empty()) continue;
+    ++num_names;
+    const int image = workspace.ImageIndex(name);
+    if (image >= 0 && workspace.ImageName(image) == name) continue;
+    if (num_unknown++ == 0)
+      example = fmt::format("line {}, {}", lines.place(), QuotedName(name));
+  }
+  constexpr const char* kRemedy =
+      "delete it and give this command again, which writes it anew";
+  if (num_names == 0) {
+    log(LogLevel::kWarning,
+        fmt::format("{} names no image, so stereo_fusion will fuse nothing; {}",
+                    path.string(),
+                    kRemedy));
+  } else if (num_unknown > 0) {
+    log(LogLevel::kWarning,
+        fmt::format("{} names {} images that the sparse model does not have "
+                    "(the first: {}), so stereo_fusion will stop; {}",
+                    path.string(),
+                    num_unknown,
+                    example,
+                    kRemedy));
+  }
+}
+
 }  // namespace
 
 uint64_t DepthAndNormalMapBytes(const Camera& camera) {
@@ -53,7 +105,8 @@ uint64_t DepthAndNormalMapBytes(const Camera& camera) {
 
 void PrepareOutputs(const Workspace& workspace,
                     const std::vector<StereoProblem>& problems,
-                    uint64_t num_bytes) {
+                    uint64_t num_bytes,
+                    const LogSink& log) {
   std::set<fs::path> folders = {workspace.StatePath()};
   for (const StereoProblem& problem : problems) {
     if (!problem.is_reference) continue;
@@ -64,6 +117,14 @@ void PrepareOutputs(const Workspace& workspace,
     }
   }
   for (const fs::path& folder : folders) CheckWritable(folder);
+  for (const StereoProblem& problem : problems) {
+    const std::string& name = workspace.ImageName(problem.ref_image);
+    // The longest of the names an image's files get; the folders exist now.
+    CheckNameFits(
+        workspace.MapPath(problem.ref_image, MapKind::kNormal, "photometric"),
+        name);
+    CheckNameFits(StampPath(workspace.StatePath(), name, "photometric"), name);
+  }
   CheckFreeSpace(*folders.begin(), num_bytes);
 
   std::error_code error;
@@ -74,6 +135,8 @@ void PrepareOutputs(const Workspace& workspace,
         names.push_back(workspace.ImageName(problem.ref_image));
     }
     WriteFusionCfg(workspace.FusionCfgPath(), names);
+  } else if (log) {
+    CheckFusionCfg(workspace, log);
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include "colmap_plugin/formats/image_name.h"
 #include "colmap_plugin/formats/patch_match_cfg.h"
+#include "colmap_plugin/workspace/cfg_check.h"
 #include "colmap_plugin/workspace/depth_range.h"
 #include "colmap_plugin/workspace/overlap_selection.h"
 #include "colmap_plugin/workspace/source_selection.h"
@@ -52,7 +53,9 @@ class ProblemReader {
   std::vector<StereoProblem> Read() {
     std::vector<bool> seen(workspace_.num_images(), false);
     std::vector<StereoProblem> problems;
-    for (const PatchMatchCfgEntry& entry : ReadPatchMatchCfg(path_)) {
+    const PatchMatchCfg cfg = ReadCfg();
+    CheckCfg(workspace_, path_, cfg, log_);
+    for (const PatchMatchCfgEntry& entry : cfg.entries) {
       const int ref = IndexOf(entry.ref_name, entry.line);
       CheckSourceNames(entry);
       if (seen[ref]) {
@@ -74,6 +77,7 @@ class ProblemReader {
         without_sources_.Add(entry.ref_name);
         continue;
       }
+      TakeThoseWithPictures(entry, &sources);
       if (!range) {
         without_range_.Add(entry.ref_name);
         continue;
@@ -106,6 +110,19 @@ class ProblemReader {
   }
 
  private:
+  PatchMatchCfg ReadCfg() const {
+    std::error_code ignored;
+    if (!std::filesystem::exists(path_, ignored)) {
+      throw Error(ErrorCode::kBadInput,
+                  fmt::format("{} is missing: it lists the images to compute; "
+                              "give it back, run image_undistorter, or write "
+                              "two lines per image: its name, then '__auto__, "
+                              "20'",
+                              path_.string()));
+    }
+    return ReadPatchMatchCfg(path_);
+  }
+
   // What the reading found out about the images, one line for each fault.
   void Report() const {
     if (without_sources_.count > 0) {
@@ -188,20 +205,23 @@ class ProblemReader {
     const int index = workspace_.ImageIndex(name);
     if (index < 0) {
       throw Error(ErrorCode::kBadInput,
-                  fmt::format("{}, entry of line {}: image {} does not exist "
-                              "in the sparse model; "
-                              "correct the name or remove it",
+                  fmt::format("{}:{}: image {} does not exist in the sparse "
+                              "model; {}",
                               path_.string(),
                               line,
-                              QuotedName(name)));
+                              QuotedName(name),
+                              RemedyForName(workspace_, name)));
     }
     return index;
   }
 
   void CheckSourceNames(const PatchMatchCfgEntry& entry) const {
-    for (const std::string& name : entry.src_names) IndexOf(name, entry.line);
+    for (const std::string& name : entry.src_names)
+      IndexOf(name, entry.src_line);
   }
 
+  // With images that have no picture; for "__auto__, N" so many that N have
+  // one.
   std::vector<int> Sources(const PatchMatchCfgEntry& entry,
                            int ref,
                            const std::optional<DepthRange>& range) const {
@@ -216,37 +236,58 @@ class ProblemReader {
     return ListedSources(entry, ref);
   }
 
+  void TakeThoseWithPictures(const PatchMatchCfgEntry& entry,
+                             std::vector<int>* sources) const {
+    const auto without = [this](int i) { return !workspace_.has_picture(i); };
+    sources->erase(std::remove_if(sources->begin(), sources->end(), without),
+                   sources->end());
+    if (entry.sources != PatchMatchCfgEntry::Sources::kAuto) return;
+    const auto max_num = static_cast<size_t>(entry.max_num_auto);
+    if (entry.max_num_auto >= 0 && sources->size() > max_num)
+      sources->resize(max_num);
+  }
+
   std::vector<int> AutoSources(const PatchMatchCfgEntry& entry,
                                int ref,
                                const std::optional<DepthRange>& range) const {
-    std::vector<int> sources = selector_.Select(
-        ref, options_.min_triangulation_angle, entry.max_num_auto);
+    if (entry.max_num_auto == 0) return {};
+    std::vector<int> sources =
+        selector_.Select(ref, options_.min_triangulation_angle, /*max_num=*/-1);
     const size_t max_num = entry.max_num_auto < 0
                                ? MaxNumSources()
                                : static_cast<size_t>(entry.max_num_auto);
     // Images whose tracks tell too little are not missed by others, either.
-    if (sources.size() < max_num) {
-      AddOverlapping(ref,
-                     range,
-                     options_.min_triangulation_angle,
-                     badly_tracked_[ref] ? all_ : badly_tracked_,
-                     &sources);
-      if (sources.size() > max_num) sources.resize(max_num);
-    }
+    AddOverlapping(ref,
+                   range,
+                   options_.min_triangulation_angle,
+                   badly_tracked_[ref] ? all_ : badly_tracked_,
+                   max_num,
+                   &sources);
     return sources;
   }
 
-  // Views that look at the same place, behind those that share points.
+  // Views that look at the same place, behind those that share points, until
+  // max_num have a picture.
   void AddOverlapping(int ref,
                       const std::optional<DepthRange>& range,
                       double min_angle,
                       const std::vector<bool>& candidates,
+                      size_t max_num,
                       std::vector<int>* sources) const {
-    if (!range) return;
+    auto num_with_picture = static_cast<size_t>(
+        std::count_if(sources->begin(), sources->end(), [this](int i) {
+          return workspace_.has_picture(i);
+        }));
+    if (!range || num_with_picture >= max_num) return;
     for (const int image :
          overlap_.Select(ref, *range, min_angle, candidates)) {
-      if (std::find(sources->begin(), sources->end(), image) == sources->end())
-        sources->push_back(image);
+      if (num_with_picture >= max_num) break;
+      if (std::find(sources->begin(), sources->end(), image) !=
+          sources->end()) {
+        continue;
+      }
+      sources->push_back(image);
+      num_with_picture += workspace_.has_picture(image);
     }
   }
 
@@ -256,8 +297,9 @@ class ProblemReader {
                               const std::optional<DepthRange>& range) const {
     std::vector<int> sources =
         selector_.Select(ref, /*min_angle=*/0, /*max_num=*/-1);
-    if (badly_tracked_[ref])
-      AddOverlapping(ref, range, /*min_angle=*/0, all_, &sources);
+    if (badly_tracked_[ref]) {
+      AddOverlapping(ref, range, /*min_angle=*/0, all_, all_.size(), &sources);
+    }
     std::vector<bool> taken(workspace_.num_images(), false);
     taken[ref] = true;
     for (const int source : sources) taken[source] = true;
@@ -273,7 +315,7 @@ class ProblemReader {
     std::vector<bool> taken(workspace_.num_images(), false);
     taken[ref] = true;
     for (const std::string& name : entry.src_names) {
-      const int source = IndexOf(name, entry.line);
+      const int source = IndexOf(name, entry.src_line);
       if (taken[source]) continue;
       taken[source] = true;
       if (workspace_.usable(source)) {
@@ -308,6 +350,11 @@ class ProblemReader {
 };
 
 }  // namespace
+
+bool CanBeComputed(const Workspace& workspace, const StereoProblem& problem) {
+  return workspace.has_picture(problem.ref_image) &&
+         !problem.src_images.empty();
+}
 
 std::vector<StereoProblem> ReadProblems(const Workspace& workspace,
                                         const ProblemOptions& options,

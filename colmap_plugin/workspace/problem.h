@@ -12,7 +12,7 @@ namespace hpm {
 struct StereoProblem {
   int ref_image = -1;           // image index
   std::vector<int> src_images;  // image indices, best first, without repeats
-                                // and without ref_image
+                                // and without ref_image; all have a picture
   // To search, model units; see DepthRanges.
   float depth_min = 0;
   float depth_max = 0;
@@ -32,11 +32,15 @@ struct ProblemOptions {
       32;  // view masks have 32 bits; more are cut with a note
 };
 
+// Whether there are pictures to compute it from.
+bool CanBeComputed(const Workspace& workspace, const StereoProblem& problem);
+
 // In file order, one problem per reference (a repeated reference keeps its
 // first entry). Images without any source or of unknown depth range are skipped
 // with a warning, and another one says if fusion will find nothing in common
-// between the images. Throws Error(kBadInput) naming cfg file and line, or if
-// nothing is left to do.
+// between the images; those that have no picture, or whose sources all have
+// none (src_images is empty then), are kept, as problems that fail. Throws
+// Error(kBadInput) naming cfg file and line, or if nothing is left to do.
 std::vector<StereoProblem> ReadProblems(const Workspace& workspace,
                                         const ProblemOptions& options,
                                         const LogSink& log);

@@ -31,6 +31,7 @@ std::vector<StereoProblem> SourceProblems(
     const ProblemOptions& options) {
   std::map<int, std::vector<const StereoProblem*>> listed_by;
   for (const StereoProblem& problem : problems) {
+    if (!CanBeComputed(workspace, problem)) continue;
     for (const int src : problem.src_images) listed_by[src].push_back(&problem);
   }
   for (const StereoProblem& problem : problems)
@@ -45,14 +46,16 @@ std::vector<StereoProblem> SourceProblems(
     StereoProblem problem;
     problem.ref_image = image;
     problem.is_reference = false;
-    problem.src_images =
-        selector.Select(image, options.min_triangulation_angle, max_num);
+    for (const int src : selector.Select(
+             image, options.min_triangulation_angle, /*max_num=*/-1)) {
+      if (workspace.has_picture(src)) problem.src_images.push_back(src);
+    }
     if (problem.src_images.empty()) {
       for (const StereoProblem* reference : references)
         problem.src_images.push_back(reference->ref_image);
-      if (problem.src_images.size() > static_cast<size_t>(max_num))
-        problem.src_images.resize(max_num);
     }
+    if (problem.src_images.size() > static_cast<size_t>(max_num))
+      problem.src_images.resize(max_num);
     const DepthRange range =
         ranges.ForImage(image).value_or(RangeOf(references));
     problem.depth_min = range.min;

@@ -10,9 +10,10 @@
 namespace hpm {
 
 // One per source of `problems` that is no reference there, in the order of the
-// images. Their own sources are chosen automatically; where there are none,
-// they are the references that list the image. Sources of theirs that are
-// neither stay without maps: they match, but have no say on consistency.
+// images; not for problems that cannot be computed. Their own sources are
+// chosen automatically; where there are none, they are the references that list
+// the image. Sources of theirs that are neither stay without maps: they match,
+// but have no say on consistency.
 std::vector<StereoProblem> SourceProblems(
     const Workspace& workspace,
     const std::vector<StereoProblem>& problems,

@@ -18,7 +18,8 @@ std::filesystem::path StampPath(const std::filesystem::path& state_path,
                                 const std::string& stage) {
   CheckImageName(image_name);
   CheckImageName(stage);
-  return state_path / "stamps" / (image_name + "." + stage + ".json");
+  // The stage is a folder, so that names as long as COLMAP's maps allow fit.
+  return state_path / "stamps" / stage / (image_name + ".json");
 }
 
 void WriteStamp(const std::filesystem::path& state_path,

@@ -1,5 +1,5 @@
 // How resume knows that the maps on disk were made with the present options:
-// stereo/hpm_mvs/stamps/<image name>.<stage>.json, written after the maps,
+// stereo/hpm_mvs/stamps/<stage>/<image name>.json, written after the maps,
 // holds the fingerprint they were made with, beside statistics for whoever is
 // curious.
 #pragma once

@@ -2,11 +2,12 @@
 
 #include "colmap_plugin/formats/image_name.h"
 #include "colmap_plugin/formats/pmvs.h"
+#include "colmap_plugin/workspace/image_files.h"
 #include "colmap_plugin/workspace/working_camera.h"
 #include "src/base/error.h"
 
 #include <algorithm>
-#include <cmath>
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -38,14 +39,6 @@ bool IsPmvs(const WorkspaceOptions& options) {
                   QuotedName(options.format)));
 }
 
-bool SameAspectRatio(const SparseCamera& camera, const ImageSize& size) {
-  // Rounding both sides to whole pixels stays below this even for thumbnails.
-  constexpr double kTolerance = 0.02;
-  const double scale_x = size.width / static_cast<double>(camera.width);
-  const double scale_y = size.height / static_cast<double>(camera.height);
-  return std::abs(scale_x / scale_y - 1) <= kTolerance;
-}
-
 // PMVS models do not hold the sizes of their images.
 std::pair<int, int> SizeOfPmvsImage(const fs::path& path) {
   const std::optional<ImageSize> size = ReadImageSize(path);
@@ -55,6 +48,30 @@ std::pair<int, int> SizeOfPmvsImage(const fs::path& path) {
                             path.string()));
   }
   return {size->width, size->height};
+}
+
+// Reasons that differ only in their numbers are one reason.
+std::string WithoutDigits(std::string text) {
+  text.erase(std::remove_if(text.begin(),
+                            text.end(),
+                            [](char c) { return c >= '0' && c <= '9'; }),
+             text.end());
+  return text;
+}
+
+// Images that were filtered out stay in the tracks of many scripts' models,
+// which COLMAP tolerates. If that is most of them, the files are of two models.
+void ReportLeftOut(const SparseModel& model, const LogSink& log) {
+  if (!log || model.num_left_out == 0) return;
+  const bool most = 2 * model.num_left_out > model.num_observations;
+  log(most ? LogLevel::kWarning : LogLevel::kInfo,
+      fmt::format(
+          "{} of {} observations of sparse points are left out: their "
+          "images (the first: id {}) are not in the images file{}",
+          model.num_left_out,
+          model.num_observations,
+          model.left_out_example,
+          most ? "; check that images and points3D are of one model" : ""));
 }
 
 Eigen::Vector3d CenterOf(const SparseImage& image) {
@@ -69,15 +86,22 @@ Workspace::Workspace(const WorkspaceOptions& options, const LogSink& log)
   if (is_pmvs_) {
     ReadPmvs();
   } else {
+    CheckFolder();
     model_ = ReadSparseModel(options_.path / "sparse", log);
+    ReportLeftOut(model_, log);
   }
   CheckNames();
   MakeCameras(log);
 }
 
 int Workspace::ImageIndex(const std::string& name) const {
-  const auto it = index_of_name_.find(name);
+  auto it = index_of_name_.find(name);
+  if (it == index_of_name_.end()) it = index_of_name_.find(WithSlashes(name));
   return it == index_of_name_.end() ? -1 : it->second;
+}
+
+fs::path Workspace::ImageFolder() const {
+  return options_.path / (is_pmvs_ ? "visualize" : "images");
 }
 
 Camera Workspace::CameraAround(int index, int origin) const {
@@ -94,10 +118,6 @@ double Workspace::Depth(int index, const Eigen::Vector3d& xyz) const {
   return (model_.images[index].cam_from_world_rotation *
           (xyz - centers_[index]))
       .z();
-}
-
-fs::path Workspace::ImagePath(int index) const {
-  return options_.path / (is_pmvs_ ? "visualize" : "images") / ImageName(index);
 }
 
 ImageDecoding Workspace::Decoding(int index) const {
@@ -129,6 +149,24 @@ fs::path Workspace::MapPath(int index,
   return StereoPath() / folder / (ImageName(index) + "." + stage + ".bin");
 }
 
+void Workspace::CheckFolder() const {
+  std::error_code ignored;
+  if (!fs::is_directory(options_.path, ignored)) {
+    throw Error(ErrorCode::kBadInput,
+                fmt::format("the workspace {} is no folder; give the path that "
+                            "image_undistorter wrote to",
+                            options_.path.string()));
+  }
+  if (!fs::exists(options_.path / "sparse", ignored) &&
+      fs::exists(options_.path / "dense/sparse", ignored)) {
+    throw Error(ErrorCode::kBadInput,
+                fmt::format("{} has no folder sparse, but {} has; give that as "
+                            "--workspace_path",
+                            options_.path.string(),
+                            (options_.path / "dense").string()));
+  }
+}
+
 void Workspace::ReadPmvs() {
   PmvsModel pmvs = ReadPmvsModel(options_.path, SizeOfPmvsImage);
   const std::vector<int> images =
@@ -153,63 +191,114 @@ void Workspace::CheckNames() {
                       QuotedName(ImageName(i))));
     }
   }
+  // After all exact names, which go first.
+  for (int i = 0; i < num_images(); ++i)
+    index_of_name_.emplace(WithSlashes(ImageName(i)), i);
 }
 
 void Workspace::MakeCameras(const LogSink& log) {
-  std::string note;  // on the first image of another size than its camera
-  int num_other_size = 0;
+  ImageFault backslashes, missing, unreadable, other_size, other_proportions;
+  std::map<std::string, ImageFault> bad_cameras;  // by reason
   std::string why_not;
   for (int i = 0; i < num_images(); ++i) {
     const SparseImage& image = model_.images[i];
     const SparseCamera& sparse_camera = model_.cameras.at(image.camera_id);
-    const std::optional<ImageSize> size = ReadImageSize(ImagePath(i));
+    const ImageFile file = FindImageFile(ImageFolder(), image.name);
+    image_paths_.push_back(file.path);
     const std::optional<Camera> camera = MakeWorkingCamera(
-        sparse_camera, image, size, options_.max_image_size, &why_not);
+        sparse_camera, image, file.size, options_.max_image_size, &why_not);
     cameras_.push_back(camera.value_or(Camera{}));
     centers_.push_back(CenterOf(image));
     usable_.push_back(camera.has_value());
-    file_sizes_.push_back(size);
+    file_sizes_.push_back(file.size);
+    has_picture_.push_back(file.exists);
     if (!camera) {
-      if (log)
-        log(LogLevel::kWarning,
-            fmt::format("Image {} is not used: {}.", image.name, why_not));
+      bad_cameras[WithoutDigits(why_not)].Add(
+          fmt::format("{}: {}", image.name, why_not));
       continue;
     }
-    if (!size ||
-        (static_cast<uint64_t>(size->width) == sparse_camera.width &&
-         static_cast<uint64_t>(size->height) == sparse_camera.height)) {
+    if (!file.exists) {
+      // Looks through a folder, so only for the image that is named.
+      missing.Add(missing.num() > 0
+                      ? ""
+                      : fmt::format("{}: {}",
+                                    file.path.string(),
+                                    WhyMissing(ImageFolder(), image.name)));
+      continue;
+    }
+    if (file.path != ImageFolder() / image.name)
+      backslashes.Add(QuotedName(image.name));
+    const ImageSize camera_size = {static_cast<int>(sparse_camera.width),
+                                   static_cast<int>(sparse_camera.height)};
+    if (!file.size) {
+      unreadable.Add(file.path.string());
+      has_picture_.back() = false;
+      continue;
+    }
+    if ((file.size->width == camera_size.width &&
+         file.size->height == camera_size.height)) {
       continue;
     }
     const std::string sizes = fmt::format("{} is {}x{}, its camera {}x{}",
                                           image.name,
-                                          size->width,
-                                          size->height,
-                                          sparse_camera.width,
-                                          sparse_camera.height);
-    if (num_other_size++ == 0) note = sizes;
-    if (log && !SameAspectRatio(sparse_camera, *size)) {
-      log(LogLevel::kWarning,
-          fmt::format("Image {}: the proportions differ, check that images/ "
-                      "holds the undistorted "
-                      "images.",
-                      sizes));
+                                          file.size->width,
+                                          file.size->height,
+                                          camera_size.width,
+                                          camera_size.height);
+    if (SameProportions(camera_size, *file.size)) {
+      other_size.Add(sizes);
+    } else {
+      other_proportions.Add(sizes);
+      has_picture_.back() = false;
     }
   }
-  if (log && num_other_size > 0) {
-    log(LogLevel::kInfo,
-        fmt::format("{} images have another size than their camera ({}); the "
-                    "cameras are scaled "
-                    "to the images.",
-                    num_other_size,
-                    note));
-  }
-  if (num_images() > 0 &&
-      std::find(usable_.begin(), usable_.end(), true) == usable_.end()) {
+
+  const int num_usable =
+      static_cast<int>(std::count(usable_.begin(), usable_.end(), true));
+  if (num_images() > 0 && num_usable == 0) {
     throw Error(ErrorCode::kBadInput,
                 fmt::format("{}: no image can be used; the last one, {}: {}",
                             options_.path.string(),
                             ImageName(num_images() - 1),
                             why_not));
+  }
+  std::vector<std::string> faults;
+  if (missing.num() > 0)
+    faults.push_back(missing.Line(num_images(), "without a file"));
+  if (unreadable.num() > 0) {
+    faults.push_back(
+        unreadable.Line(num_images(), "with a file that cannot be decoded") +
+        "; undistort the images again");
+  }
+  if (other_proportions.num() > 0) {
+    faults.push_back(
+        other_proportions.Line(num_images(),
+                               "with other proportions than their camera") +
+        "; they are not used: undo a rotation after the reconstruction (by "
+        "software or by its EXIF entry), or undistort the images again");
+  }
+  const int num_faults =
+      missing.num() + unreadable.num() + other_proportions.num();
+  if (num_usable > 0 && num_faults == num_usable) {
+    throw Error(ErrorCode::kBadInput,
+                fmt::format("{}", fmt::join(faults, "; ")));
+  }
+  if (!log) return;
+  for (const auto& [reason, fault] : bad_cameras)
+    log(LogLevel::kWarning, fault.Line(num_images(), "not used"));
+  for (const std::string& fault : faults) log(LogLevel::kWarning, fault);
+  if (backslashes.num() > 0) {
+    log(LogLevel::kWarning,
+        backslashes.Line(num_images(), "with backslashes in their names") +
+            "; their files are found with '/' in their place, but "
+            "stereo_fusion will not find them on this system: write the names "
+            "in the sparse model with '/'");
+  }
+  if (other_size.num() > 0) {
+    log(LogLevel::kInfo,
+        fmt::format("{}; the cameras are scaled to the images.",
+                    other_size.Line(num_images(),
+                                    "of another size than their camera")));
   }
 }
 

@@ -29,12 +29,14 @@ class Workspace {
  public:
   // Reads the model, checks every image name and camera. An image whose camera
   // is unusable (distorted, not perspective, non-finite pose or focal <= 0)
-  // keeps its index but is marked not usable, with a warning in `log`. An image
-  // file of another size than its camera scales the camera, with a note; a
-  // missing image file is no error here. PMVS: (re)writes patch-match.cfg and
-  // fusion.cfg from the option file. Throws Error(kBadInput) naming the missing
-  // or damaged file, or if no image is usable; Error(kUsage) for an unknown
-  // format.
+  // keeps its index but is marked not usable, with a warning in `log` for all
+  // with the same fault. An image
+  // file of another size than its camera scales the camera, with a note; one
+  // that is missing or has other proportions than its camera marks the image as
+  // without picture, with one warning for all. PMVS: (re)writes patch-match.cfg
+  // and fusion.cfg from the option file. Throws Error(kBadInput) naming the
+  // missing or damaged file, or if no image is usable or has a picture;
+  // Error(kUsage) for an unknown format.
   Workspace(const WorkspaceOptions& options, const LogSink& log);
 
   int num_images() const { return static_cast<int>(model_.images.size()); }
@@ -42,9 +44,16 @@ class Workspace {
   const std::string& ImageName(int index) const {
     return model_.images[index].name;
   }
-  // -1 if there is no such image.
+  // '\\' counts as '/' if there is no image of just this name. -1 if there is
+  // no such image.
   int ImageIndex(const std::string& name) const;
+  // Whether patch match can use the camera.
   bool usable(int index) const { return usable_[index]; }
+  // Whether there is an image file, and one that can be the camera's. Damage
+  // that only decoding finds is not known here.
+  bool has_picture(int index) const { return has_picture_[index]; }
+  // Decoding found damage.
+  void DropPicture(int index) { has_picture_[index] = false; }
 
   // At working size (max_image_size applied as COLMAP does), with the library's
   // pixel rule: integer (col, row) is the pixel centre (see working_camera.h).
@@ -71,7 +80,9 @@ class Workspace {
     deep_range_ = range;
   }
 
-  std::filesystem::path ImagePath(int index) const;
+  const std::filesystem::path& ImagePath(int index) const {
+    return image_paths_[index];
+  }
   std::filesystem::path StereoPath()
       const;  // WS/stereo or WS/stereo-<option name>
   std::filesystem::path PatchMatchCfgPath() const {
@@ -90,9 +101,11 @@ class Workspace {
   std::filesystem::path StatePath() const { return StereoPath() / "hpm_mvs"; }
 
  private:
+  void CheckFolder() const;
   void ReadPmvs();
   void CheckNames();
   void MakeCameras(const LogSink& log);
+  std::filesystem::path ImageFolder() const;
 
   WorkspaceOptions options_;
   bool is_pmvs_ = false;
@@ -100,6 +113,8 @@ class Workspace {
   std::vector<Camera> cameras_;
   std::vector<Eigen::Vector3d> centers_;
   std::vector<bool> usable_;
+  std::vector<std::filesystem::path> image_paths_;
+  std::vector<bool> has_picture_;
   std::vector<std::optional<ImageSize>> file_sizes_;
   std::optional<GreyRange> deep_range_;
   std::unordered_map<std::string, int> index_of_name_;

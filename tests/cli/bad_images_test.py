@@ -51,16 +51,55 @@ class BadImages(CliTest):
         path.write_bytes(good)
         self.assert_rerun_completes(workspace)
 
-    def test_allow_missing_files_leaves_a_missing_source_out(self):
+    def test_a_picture_turned_after_the_reconstruction_fails_and_is_no_source(self):
         workspace = self.workspace()
-        (workspace / "images/view02.png").unlink()
-        (workspace / "stereo/patch-match.cfg").write_text(
-            "".join(f"view0{i}.png\n__auto__, 20\n" for i in (0, 1, 3))
-        )
-        result = self.run_tool(workspace, *FAST, "--PatchMatchStereo.allow_missing_files=1")
-        self.assert_exit(result, 0)
-        self.assertIn("view02.png", result.stdout + result.stderr)
-        self.assert_complete(workspace, ["view00.png", "view01.png", "view03.png"])
+        cfg = workspace / "stereo/patch-match.cfg"
+        everything = cfg.read_text()
+        upright = [f"view0{i}.png" for i in (0, 1, 3)]
+        cfg.write_text("".join(f"{name}\n{', '.join(upright)}\n" for name in upright))
+        self.assert_exit(self.run_tool(workspace, *FAST), 0)
+        without = map_files(workspace)
+        cfg.write_text(everything.replace("__auto__, 20", "__all__"))
+        (workspace / "images/view02.png").write_bytes(constant(72, 96, 77))
+        result = self.run_tool(workspace, *FAST, "--Hpm.overwrite=1")
+        self.assert_exit(result, 4, "1 of 4 images failed", "view02.png")
+        self.assertRegex(result.stderr, "view02.png is 72x96, its camera 96x72.*rotation.*EXIF")
+        self.assert_same_maps(map_files(workspace), without)
+
+    def test_a_broken_image_leaves_no_maps_between_stages_and_is_not_in_the_way(self):
+        workspace = self.workspace(width=48, height=36)
+        path = workspace / "images/view02.png"
+        good = path.read_bytes()
+        options = [o for o in FAST if "num_geom_passes" not in o] + ["--Hpm.num_geom_passes=3"]
+        self.assert_exit(self.run_tool(workspace, *options), 0)
+        expected = map_files(workspace)
+        for damaged in (good[:60], b"not a picture"):
+            path.write_bytes(damaged)
+            for computed, kept in ((3, 0), (0, 3)):
+                result = self.run_tool(workspace, *options)
+                self.assert_exit(result, 4, "1 of 4 images failed", "view02.png")
+                self.assertIn(f"{computed} computed, {kept} kept", result.stdout)
+                state = workspace / "stereo/hpm_mvs"
+                self.assertEqual([p.name for p in state.iterdir() if p.is_dir()], ["stamps"])
+            path.write_bytes(good)
+            self.assert_exit(self.run_tool(workspace, *options), 0)
+            self.assert_same_maps(map_files(workspace), expected)
+
+    def test_a_source_without_file_is_left_out_and_no_failure(self):
+        """Only references count as failed: all maps that were asked for exist."""
+        for options in ([], ["--PatchMatchStereo.allow_missing_files=1"]):
+            for sources in ("__auto__, 20", "__all__"):
+                with self.subTest(options=options, sources=sources):
+                    workspace = self.workspace()
+                    (workspace / "images/view02.png").unlink()
+                    (workspace / "stereo/patch-match.cfg").write_text(
+                        "".join(f"view0{i}.png\n{sources}\n" for i in (0, 1, 3))
+                    )
+                    result = self.run_tool(workspace, *FAST, *options)
+                    self.assert_exit(result, 0)
+                    self.assertIn("view02.png", result.stderr)
+                    self.assertIn("3 computed, 0 kept from an earlier run, 0 failed", result.stdout)
+                    self.assert_complete(workspace, ["view00.png", "view01.png", "view03.png"])
 
     def test_sixteen_bits_and_another_size_are_read(self):
         workspace = self.workspace()

@@ -8,6 +8,7 @@ import subprocess
 import time
 import unittest
 
+from png import bomb
 from sparse_patch import set_camera_sizes
 from support import FAST, SLOW, CliTest
 
@@ -91,10 +92,10 @@ class Resources(CliTest):
 
     def test_too_little_memory_is_exit_5_before_anything_is_computed(self):
         workspace = self.workspace()
-        # Without the image files the sizes of the model count.
         set_camera_sizes(workspace / "sparse/cameras.bin", 8000, 6000)
-        for image in (workspace / "images").iterdir():
-            image.rename(workspace / image.name)
+        images = {path: path.read_bytes() for path in (workspace / "images").iterdir()}
+        for path in images:
+            path.write_bytes(bomb(8000, 6000))
         limit = 2 << 30
         result = self.run_tool(
             workspace,
@@ -104,8 +105,8 @@ class Resources(CliTest):
         self.assert_exit(result, 5, "--PatchMatchStereo.max_image_size")
         self.assertNotIn("Processing view", result.stdout)
         self.assert_no_partial_files(workspace)
-        for image in workspace.glob("*.png"):
-            image.rename(workspace / "images" / image.name)
+        for path, data in images.items():
+            path.write_bytes(data)
         set_camera_sizes(workspace / "sparse/cameras.bin", 96, 72)
         self.assert_rerun_completes(workspace)
 

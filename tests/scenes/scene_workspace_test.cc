@@ -70,7 +70,8 @@ TEST_F(SceneWorkspace, SparsePointsLieOnTheSurfaceInEveryImageOfTheirTrack) {
 }
 
 TEST_F(SceneWorkspace, ConfigurationNamesEveryView) {
-  const auto entries = ReadPatchMatchCfg(folder_ / "stereo/patch-match.cfg");
+  const auto entries =
+      ReadPatchMatchCfg(folder_ / "stereo/patch-match.cfg").entries;
   ASSERT_EQ(entries.size(), 3u);
   EXPECT_EQ(entries[2].ref_name, ViewName(2));
   EXPECT_EQ(entries[2].sources, PatchMatchCfgEntry::Sources::kAuto);

@@ -35,7 +35,9 @@ class ControllerTest : public testing::Test {
   RunSummary Run() {
     PatchMatchController controller(
         options_,
-        [](LogLevel, const std::string&) {},
+        [this](LogLevel level, const std::string& line) {
+          if (level == LogLevel::kWarning) warnings_.push_back(line);
+        },
         [this](const ProgressEvent& event) {
           events_.push_back(event);
           if (on_progress_) on_progress_(event);
@@ -67,10 +69,22 @@ class ControllerTest : public testing::Test {
     return found;
   }
 
+  // Folders of maps between stages.
+  std::vector<std::string> InnerFolders() const {
+    std::vector<std::string> found;
+    for (const auto& entry : std::filesystem::directory_iterator(
+             scene_.path() / "stereo/hpm_mvs")) {
+      if (entry.is_directory() && entry.path().filename() != "stamps")
+        found.push_back(entry.path().filename().string());
+    }
+    return found;
+  }
+
   SceneWorkspace scene_{SmallScene(kNumImages, kWidth, kHeight)};
   ControllerOptions options_;
   CancelToken cancel_;
   std::vector<ProgressEvent> events_;
+  std::vector<std::string> warnings_;
   std::function<void(const ProgressEvent&)> on_progress_;
 };
 
@@ -280,6 +294,94 @@ TEST_F(ControllerTest, UnreadableImageFailsAloneAndIsNamed) {
   EXPECT_EQ(summary.num_computed, kNumImages - 1);
   EXPECT_TRUE(std::filesystem::exists(MapPath("depth_maps", 0, "geometric")));
   EXPECT_FALSE(std::filesystem::exists(MapPath("depth_maps", 1, "geometric")));
+  EXPECT_THAT(InnerFolders(), testing::IsEmpty());
+}
+
+// Damage that only decoding finds, at first in the middle of the run: the maps
+// are those of a run without the image, the next run keeps them, and those
+// after a repair are as if nothing had been. The size of the file says nothing.
+TEST_F(ControllerTest, AnUnreadableImageIsPlannedWithoutAndComesBack) {
+  Run();
+  const std::vector<float> whole = Depth(0, "geometric");
+  const std::filesystem::path file = scene_.path() / "images" / ViewName(1);
+  const std::string good = ReadFile(file);
+  WriteFile(file, good.substr(0, 60) + std::string(good.size() - 60, 'x'));
+  for (const bool overwrite : {true, false, false}) {
+    options_.hpm.overwrite = overwrite;
+    warnings_.clear();
+    const RunSummary summary = Run();
+    EXPECT_THAT(summary.failed, testing::ElementsAre(ViewName(1)));
+    EXPECT_EQ(summary.num_computed, overwrite ? kNumImages - 1 : 0);
+    EXPECT_THAT(InnerFolders(), testing::IsEmpty());
+    // Nothing of maps of other options, and once.
+    EXPECT_THAT(warnings_,
+                testing::ElementsAre(testing::HasSubstr(ViewName(1))));
+  }
+  const std::vector<float> without = Depth(0, "geometric");
+  EXPECT_NE(without, whole);
+  WriteFile(file, good);
+  EXPECT_THAT(Run().failed, testing::IsEmpty());
+  EXPECT_EQ(Depth(0, "geometric"), whole);
+
+  std::filesystem::remove(file);
+  std::filesystem::remove_all(scene_.path() / "stereo/depth_maps");
+  Run();
+  EXPECT_EQ(Depth(0, "geometric"), without);
+}
+
+// The same where another image takes the place of the damaged one among the
+// sources, and gets maps of its own that nobody asked for before.
+TEST_F(ControllerTest, AnUnreadableSourceOfAFewReferencesIsReplaced) {
+  const std::filesystem::path cfg = scene_.path() / "stereo/patch-match.cfg";
+  WriteFile(cfg, ViewName(0) + "\n__auto__, 1\n");
+  options_.hpm.num_geom_passes = 2;
+  Run();
+  const std::vector<float> whole = Depth(0, "geometric");
+  int source = 0;
+  std::string good;
+  const auto file = [&] { return scene_.path() / "images" / ViewName(source); };
+  // Which one it is shows when it is damaged.
+  for (std::vector<float> without = whole; without == whole;) {
+    if (source > 0) WriteFile(file(), good);
+    ASSERT_LT(++source, kNumImages);
+    good = ReadFile(file());
+    WriteFile(file(), good.substr(0, 60) + std::string(good.size() - 60, 'x'));
+    for (const bool overwrite : {true, false}) {
+      options_.hpm.overwrite = overwrite;
+      const RunSummary summary = Run();
+      EXPECT_THAT(summary.failed, testing::IsEmpty());
+      EXPECT_EQ(summary.num_problems, 1);
+      EXPECT_EQ(summary.num_computed, overwrite ? 1 : 0);
+      EXPECT_THAT(InnerFolders(), testing::IsEmpty());
+    }
+    without = Depth(0, "geometric");
+  }
+  const std::vector<float> without = Depth(0, "geometric");
+  WriteFile(file(), good);
+  EXPECT_EQ(Run().num_computed, 1);
+  EXPECT_EQ(Depth(0, "geometric"), whole);
+
+  std::filesystem::remove(file());
+  EXPECT_EQ(Run().num_computed, 1);
+  EXPECT_EQ(Depth(0, "geometric"), without);
+}
+
+TEST_F(ControllerTest, ASourceThatIsNoReferenceIsNoFailure) {
+  WriteFile(scene_.path() / "stereo/patch-match.cfg",
+            ViewName(0) + "\n__all__\n" + ViewName(2) + "\n__all__\n");
+  std::filesystem::resize_file(scene_.path() / "images" / ViewName(1), 60);
+  std::filesystem::remove(scene_.path() / "images" / ViewName(3));
+  const RunSummary summary = Run();
+  EXPECT_THAT(summary.failed, testing::IsEmpty());
+  EXPECT_EQ(summary.num_computed, 2);
+}
+
+// What an interrupted run leaves goes when a later one has made everything.
+TEST_F(ControllerTest, NoInnerMapsAreLeftOfAnyRun) {
+  WriteFile(scene_.path() / "stereo/hpm_mvs/level_7_photometric/a.depth.bin",
+            "of other options");
+  Run();
+  EXPECT_THAT(InnerFolders(), testing::IsEmpty());
 }
 
 // Half replaced maps must not pass for those of the run before.

@@ -17,11 +17,7 @@ constexpr uint64_t kPlenty = 100 * kImageBytes;
 class InputCacheTest : public testing::Test {
  protected:
   InputCache MakeCache(uint64_t max_bytes) {
-    return InputCache(
-        workspace_, max_bytes, [this](LogLevel level, const std::string& line) {
-          EXPECT_EQ(level, LogLevel::kWarning);
-          warnings_.push_back(line);
-        });
+    return InputCache(workspace_, max_bytes);
   }
 
   StageFiles WriteTruth(int image) {
@@ -47,7 +43,6 @@ class InputCacheTest : public testing::Test {
 
   SceneWorkspace scene_{SmallScene(3, kWidth, kHeight)};
   Workspace workspace_ = scene_.Open();
-  std::vector<std::string> warnings_;
 };
 
 TEST_F(InputCacheTest, ReadsAnImageOnce) {
@@ -64,7 +59,7 @@ TEST_F(InputCacheTest, ReadsAgainWhatDidNotFit) {
   InputCache cache = MakeCache(kImageBytes - 1);
   ASSERT_NE(cache.Image(1), nullptr);
   std::filesystem::remove(workspace_.ImagePath(1));
-  EXPECT_EQ(cache.Image(1), nullptr);
+  EXPECT_THROW(cache.Image(1), UnreadableImage);
 }
 
 TEST_F(InputCacheTest, AStageGetsImagesOfItsLevel) {
@@ -82,13 +77,17 @@ TEST_F(InputCacheTest, AStageGetsImagesOfItsLevel) {
   EXPECT_EQ(full->width, kWidth);
 }
 
-TEST_F(InputCacheTest, UnreadableImageIsReportedOnce) {
-  std::filesystem::resize_file(workspace_.ImagePath(2), 10);
+TEST_F(InputCacheTest, AnUnreadableImageIsNamed) {
+  std::filesystem::resize_file(workspace_.ImagePath(2), 60);
   InputCache cache = MakeCache(kPlenty);
-  for (int i = 0; i < 3; ++i) EXPECT_EQ(cache.Image(2), nullptr);
-  EXPECT_EQ(warnings_.size(), 1u);
-  EXPECT_THAT(warnings_[0], testing::HasSubstr(ViewName(2)));
-  EXPECT_THAT(cache.UnreadableImages(), testing::ElementsAre(ViewName(2)));
+  try {
+    cache.Image(2);
+    ADD_FAILURE();
+  } catch (const UnreadableImage& error) {
+    EXPECT_EQ(error.image(), 2);
+    EXPECT_EQ(error.code(), ErrorCode::kBadInput);
+    EXPECT_THAT(error.what(), testing::HasSubstr(ViewName(2)));
+  }
   EXPECT_NE(cache.Image(1), nullptr);
 }
 

@@ -66,7 +66,7 @@ TEST(StageRunner, ForgetsTheViewsWhenTheImageIsDone) {
   const Schedule schedule = MakeSchedule(MakeScheduleOptions(options));
   const StagePlan plan(workspace, problems, schedule, options);
   const LogSink log = [](LogLevel, const std::string&) {};
-  InputCache inputs(workspace, 1 << 20, log);
+  InputCache inputs(workspace, 1 << 20);
   RecordingBackend backend;
   CancelToken cancel;
   const RunLock lock(workspace.StatePath(), log, &cancel);

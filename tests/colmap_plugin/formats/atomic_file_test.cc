@@ -173,13 +173,35 @@ TEST(AtomicFile, AFileInPlaceOfTheFolderIsBadInput) {
 TEST(AtomicFile, NeverFollowsALinkInPlaceOfTheTemporary) {
   const ScratchFolder folder;
   WriteFile(folder / "canary", "alive");
-  const std::string temporary =
-      "f.tmp." + ThisHost() + "." + std::to_string(getpid());
-  std::filesystem::create_symlink(folder / "canary", folder / temporary);
+  std::filesystem::path temporary;
+  {
+    const AtomicFile file(folder / "f");
+    for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
+      if (entry.path().filename() != "canary") temporary = entry.path();
+  }
+  ASSERT_FALSE(std::filesystem::exists(temporary));
+  std::filesystem::create_symlink(folder / "canary", temporary);
   WriteFileAtomically(folder / "f", "new");
   EXPECT_EQ(ReadFile(folder / "canary"), "alive");
   EXPECT_EQ(ReadFile(folder / "f"), "new");
   EXPECT_FALSE(std::filesystem::is_symlink(folder / "f"));
+}
+
+TEST(AtomicFile, WritesFilesWithNamesAsLongAsTheDiskAllows) {
+  const ScratchFolder folder;
+  const std::string a(255, 'a');
+  const std::string b = std::string(254, 'a') + "b";
+  AtomicFile first(folder / a);
+  AtomicFile second(folder / b);  // the two do not get into each other's way
+  first.Write("1");
+  second.Write("2");
+  first.Commit();
+  second.Commit();
+  EXPECT_EQ(ReadFile(folder / a), "1");
+  EXPECT_EQ(ReadFile(folder / b), "2");
+  ExpectError(ErrorCode::kBadInput, "aaa", [&] {
+    WriteFileAtomically(folder / (a + "a"), "y");
+  });
 }
 
 TEST(AtomicFile, ALinkUnderTheFinalNameIsReplacedNotFollowed) {

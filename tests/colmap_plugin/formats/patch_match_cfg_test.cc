@@ -11,11 +11,11 @@ namespace {
 using Sources = PatchMatchCfgEntry::Sources;
 using testing::ElementsAre;
 
-class PatchMatchCfg : public testing::Test {
+class PatchMatchCfgTest : public testing::Test {
  protected:
   std::vector<PatchMatchCfgEntry> Read(std::string_view text) {
     WriteFile(path_, text);
-    return ReadPatchMatchCfg(path_);
+    return ReadPatchMatchCfg(path_).entries;
   }
 
   // The entry of a file with the one reference "r" and this source line.
@@ -29,7 +29,7 @@ class PatchMatchCfg : public testing::Test {
   std::filesystem::path path_ = folder_ / "patch-match.cfg";
 };
 
-TEST_F(PatchMatchCfg, ReadsTheThreeKindsOfSources) {
+TEST_F(PatchMatchCfgTest, ReadsTheThreeKindsOfSources) {
   const auto entries = Read(
       "a.jpg\n__all__\n"
       "b.jpg\n__auto__, 20\n"
@@ -42,9 +42,10 @@ TEST_F(PatchMatchCfg, ReadsTheThreeKindsOfSources) {
   EXPECT_EQ(entries[2].sources, Sources::kList);
   EXPECT_THAT(entries[2].src_names, ElementsAre("a.jpg", "b.jpg", "a.jpg"));
   EXPECT_EQ(entries[2].line, 5);
+  EXPECT_EQ(entries[2].src_line, 6);
 }
 
-TEST_F(PatchMatchCfg, CommentsBlanksCrlfAndByteOrderMarkAreNoEntries) {
+TEST_F(PatchMatchCfgTest, CommentsBlanksCrlfAndByteOrderMarkAreNoEntries) {
   const auto entries = Read(
       "\xEF\xBB\xBF# head\r\n\r\n \t a b.jpg \t\r\n# between\r\n   \r\n"
       "  # indented\r\n c # no comment.jpg ,\r\n");
@@ -54,7 +55,7 @@ TEST_F(PatchMatchCfg, CommentsBlanksCrlfAndByteOrderMarkAreNoEntries) {
   EXPECT_THAT(entries[0].src_names, ElementsAre("c # no comment.jpg"));
 }
 
-TEST_F(PatchMatchCfg, ByteOrderMarkBeforeAReferenceIsNotPartOfIt) {
+TEST_F(PatchMatchCfgTest, ByteOrderMarkBeforeAReferenceIsNotPartOfIt) {
   EXPECT_EQ(Read("\xEF\xBB\xBF"
                  "a\n__all__\n")
                 .at(0)
@@ -62,19 +63,19 @@ TEST_F(PatchMatchCfg, ByteOrderMarkBeforeAReferenceIsNotPartOfIt) {
             "a");
 }
 
-TEST_F(PatchMatchCfg, ReferencesAreTakenWhole) {
+TEST_F(PatchMatchCfgTest, ReferencesAreTakenWhole) {
   EXPECT_EQ(Read("a, b;c.jpg\n__all__").at(0).ref_name, "a, b;c.jpg");
   EXPECT_EQ(Read("__auto__, 20\n__all__").at(0).ref_name, "__auto__, 20");
 }
 
-TEST_F(PatchMatchCfg, RunsOfSeparatorsAreOneAndEmptyItemsAreDropped) {
+TEST_F(PatchMatchCfgTest, RunsOfSeparatorsAreOneAndEmptyItemsAreDropped) {
   EXPECT_THAT(ReadSources(",;, a ,;, b ;, ").src_names, ElementsAre("a", "b"));
   EXPECT_TRUE(ReadSources(",;").src_names.empty());
   EXPECT_EQ(ReadSources("__all__,").sources, Sources::kAll);
   EXPECT_EQ(ReadSources(";__auto__;7,").max_num_auto, 7);
 }
 
-TEST_F(PatchMatchCfg, KeywordsOfAnotherShapeAreNames) {
+TEST_F(PatchMatchCfgTest, KeywordsOfAnotherShapeAreNames) {
   EXPECT_THAT(ReadSources("__auto__").src_names, ElementsAre("__auto__"));
   EXPECT_THAT(ReadSources("__auto__,").src_names, ElementsAre("__auto__"));
   EXPECT_THAT(ReadSources("__auto__, 5, 6").src_names,
@@ -83,7 +84,7 @@ TEST_F(PatchMatchCfg, KeywordsOfAnotherShapeAreNames) {
   EXPECT_THAT(ReadSources("__ALL__").src_names, ElementsAre("__ALL__"));
 }
 
-TEST_F(PatchMatchCfg, TheNumberOfAutoIsTheLeadingInteger) {
+TEST_F(PatchMatchCfgTest, TheNumberOfAutoIsTheLeadingInteger) {
   EXPECT_EQ(ReadSources("__auto__, 20abc").max_num_auto, 20);
   EXPECT_EQ(ReadSources("__auto__, 3.9").max_num_auto, 3);
   EXPECT_EQ(ReadSources("__auto__, +4").max_num_auto, 4);
@@ -93,7 +94,7 @@ TEST_F(PatchMatchCfg, TheNumberOfAutoIsTheLeadingInteger) {
   EXPECT_EQ(ReadSources("__auto__, 9000000000").max_num_auto, 2147483647);
 }
 
-TEST_F(PatchMatchCfg, AutoWithoutANumberNamesFileAndLine) {
+TEST_F(PatchMatchCfgTest, AutoWithoutANumberNamesFileAndLine) {
   for (const char* number : {"x", "-", "+", "+-3", "99999999999999999999"}) {
     SCOPED_TRACE(number);
     ExpectError(ErrorCode::kBadInput, "patch-match.cfg:5:", [&] {
@@ -102,12 +103,21 @@ TEST_F(PatchMatchCfg, AutoWithoutANumberNamesFileAndLine) {
   }
 }
 
-TEST_F(PatchMatchCfg, AReferenceWithoutSourcesAtTheEndIsDropped) {
-  EXPECT_EQ(Read("a\n__all__\nb\n# end\n").size(), 1u);
-  EXPECT_TRUE(Read("").empty());
+TEST_F(PatchMatchCfgTest, WhatIsNoEntryIsKeptWithItsLine) {
+  WriteFile(path_, "# head\na\n__all__\nb\n  #end\n");
+  const PatchMatchCfg cfg = ReadPatchMatchCfg(path_);
+  EXPECT_EQ(cfg.entries.size(), 1u);
+  EXPECT_EQ(cfg.unpaired.text, "b");
+  EXPECT_EQ(cfg.unpaired.line, 4);
+  ASSERT_EQ(cfg.comments.size(), 2u);
+  EXPECT_EQ(cfg.comments[1].text, "#end");
+  EXPECT_EQ(cfg.comments[1].line, 5);
+  WriteFile(path_, "");
+  EXPECT_TRUE(ReadPatchMatchCfg(path_).entries.empty());
+  EXPECT_EQ(ReadPatchMatchCfg(path_).unpaired.text, "");
 }
 
-TEST_F(PatchMatchCfg, ALineOfTenMegabytesIsReadInASecond) {
+TEST_F(PatchMatchCfgTest, ALineOfTenMegabytesIsReadInASecond) {
   std::string line;
   while (line.size() < 10'000'000) line += "some/image.jpg, ";
   const size_t num_names = line.size() / 16;
@@ -126,7 +136,7 @@ TEST_F(PatchMatchCfg, ALineOfTenMegabytesIsReadInASecond) {
   }
 }
 
-TEST_F(PatchMatchCfg, WritesColmapsLinesByteForByte) {
+TEST_F(PatchMatchCfgTest, WritesColmapsLinesByteForByte) {
   const CommaLocale locale;
   PatchMatchCfgEntry list;
   list.ref_name = "c, d.jpg";
@@ -144,7 +154,7 @@ TEST_F(PatchMatchCfg, WritesColmapsLinesByteForByte) {
             "c, d.jpg\na.jpg, b.jpg, \n");
 }
 
-TEST_F(PatchMatchCfg, EveryWritableListComesBackUnchanged) {
+TEST_F(PatchMatchCfgTest, EveryWritableListComesBackUnchanged) {
   for (const std::vector<std::string>& names :
        {std::vector<std::string>{}, {"a"}, {"#a", "b"}, {"a b", "c # d"}}) {
     PatchMatchCfgEntry entry;
@@ -152,14 +162,14 @@ TEST_F(PatchMatchCfg, EveryWritableListComesBackUnchanged) {
     entry.sources = Sources::kList;
     entry.src_names = names;
     WritePatchMatchCfg(path_, {entry, entry});
-    const auto entries = ReadPatchMatchCfg(path_);
+    const auto entries = ReadPatchMatchCfg(path_).entries;
     ASSERT_EQ(entries.size(), 2u);
     EXPECT_EQ(entries[1].ref_name, "r");
     EXPECT_EQ(entries[1].src_names, names);
   }
 }
 
-TEST_F(PatchMatchCfg, NamesThatTheGrammarCannotHoldAreRefused) {
+TEST_F(PatchMatchCfgTest, NamesThatTheGrammarCannotHoldAreRefused) {
   for (const char* name : {"", "#a", " a", "a\t", "a\nb"}) {
     PatchMatchCfgEntry entry;
     entry.ref_name = name;
@@ -182,7 +192,7 @@ TEST_F(PatchMatchCfg, NamesThatTheGrammarCannotHoldAreRefused) {
   EXPECT_EQ(folder_.CountFiles(), 0u);
 }
 
-TEST_F(PatchMatchCfg, FusionCfgIsOneNamePerLine) {
+TEST_F(PatchMatchCfgTest, FusionCfgIsOneNamePerLine) {
   WriteFusionCfg(folder_ / "fusion.cfg", {"a, b.jpg", "#c.jpg"});
   EXPECT_EQ(ReadFile(folder_ / "fusion.cfg"), "a, b.jpg\n#c.jpg\n");
 }

@@ -1,8 +1,13 @@
 #include "colmap_plugin/formats/sparse_model.h"
 
+#include "colmap_plugin/formats/text_reader.h"
 #include "tests/colmap_plugin/formats/tiny_model.h"
 
 #include <limits>
+#include <regex>
+#include <sstream>
+
+#include <fmt/format.h>
 
 namespace hpm {
 namespace {
@@ -187,6 +192,69 @@ TEST(SparseModel, QuaternionsOfAnyScaleAreNormalised) {
     files["images.bin"] = Counted(1, ImageRecord(7, 1, "a.jpg", qw));
     files["points3D.bin"] = Counted(0, "");
     EXPECT_EQ(ReadFiles(files).images[0].cam_from_world_rotation.w(), 1) << qw;
+  }
+}
+
+// Every word but names, models and the marks of rigs, as numpy.savetxt writes
+// it.
+std::string AsFloats(const std::string& text) {
+  std::istringstream lines(text);
+  std::string result;
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    for (std::string word; words >> word;) {
+      uint64_t number;
+      if (ParseNumber(word, &number) && number < 1000)
+        word = fmt::format("{:.18e}", static_cast<double>(number));
+      result += word + " ";
+    }
+    result += "\n";
+  }
+  return result;
+}
+
+TEST(SparseModel, WholeNumbersMayBeWrittenAsFloats) {
+  ModelFiles files = Joined(TinyTextModel(), TinyTextRigFiles());
+  const SparseModel expected = ReadFiles(files);
+  for (auto& [name, text] : files) {
+    // Names have blanks, and a rig's lines are not numbers alone.
+    if (name != "images.txt" && name != "rigs.txt") text = AsFloats(text);
+  }
+  files["images.txt"] = std::regex_replace(files["images.txt"],
+                                           std::regex("(^|\\n)(\\d+) "),
+                                           std::string("$1$2.0 "));
+  EXPECT_NE(files["cameras.txt"], TinyTextModel()["cameras.txt"]);
+  const SparseModel model = ReadFiles(files);
+  EXPECT_EQ(ImageIds(model), ImageIds(expected));
+  EXPECT_EQ(model.cameras.at(1).width, 40u);
+  EXPECT_EQ(model.points[0].track, expected.points[0].track);
+}
+
+TEST(SparseModel, IdsOfImagePointsMayBeAnyNumber) {
+  for (const char* id : {"-1", "-1.0", "18446744073709551615", "1.8e+19"}) {
+    ModelFiles files = TinyTextModel();
+    files["images.txt"] = fmt::format(
+        "7 1 0 0 0 0 0 0 1 a.jpg\n1 2 {0} 3 4 {0}\n"
+        "3 1 0 0 0 0 0 0 1 b.jpg\n\n5 1 0 0 0 0 0 0 1 c.jpg\n\n",
+        id);
+    EXPECT_EQ(ReadFiles(files).images.size(), 3u) << id;
+  }
+}
+
+TEST(SparseModel, TracksMayNameImagesThatWereFilteredOut) {
+  ModelFiles binary = TinyBinaryModel(), text = TinyTextModel();
+  binary["points3D.bin"] =
+      Counted(2, PointRecord(9, 1, {99, 7, 98, 7}) + PointRecord(8, 1, {99}));
+  text["points3D.txt"] =
+      "9 1 2 3 1 2 3 0.5 99 0 7 0 98 0 7 1\n8 1 2 3 1 2 3 0.5 99 0\n";
+  for (const ModelFiles& files : {binary, text}) {
+    const SparseModel model = ReadFiles(files);
+    ASSERT_EQ(model.points.size(), 2u);
+    EXPECT_THAT(model.points[0].track, ElementsAre(0, 0));
+    EXPECT_TRUE(model.points[1].track.empty());
+    EXPECT_EQ(model.num_observations, 5u);
+    EXPECT_EQ(model.num_left_out, 3u);
+    EXPECT_EQ(model.left_out_example, 99u);
   }
 }
 

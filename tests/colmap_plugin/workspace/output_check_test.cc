@@ -27,7 +27,7 @@ class OutputCheckTest : public ::testing::Test {
 
 TEST_F(OutputCheckTest, CreatesEveryFolderAndLeavesNoTrialFile) {
   const Workspace workspace = files_.Open();
-  PrepareOutputs(workspace, problems_, 0);
+  PrepareOutputs(workspace, problems_, 0, files_.Log());
   for (const char* kind : {"depth_maps", "normal_maps", "consistency_graphs"}) {
     EXPECT_TRUE(fs::is_directory(workspace.StereoPath() / kind / "cam1/day2"));
   }
@@ -42,18 +42,18 @@ TEST_F(OutputCheckTest, CreatesEveryFolderAndLeavesNoTrialFile) {
 
 TEST_F(OutputCheckTest, WritesFusionCfgOnlyIfThereIsNone) {
   const Workspace workspace = files_.Open();
-  PrepareOutputs(workspace, problems_, 0);
+  PrepareOutputs(workspace, problems_, 0, files_.Log());
   EXPECT_EQ(ReadFile(workspace.FusionCfgPath()), "cam1/day2/x.jpg\na.jpg\n");
   WriteFile(workspace.FusionCfgPath(), "a.jpg\n");
-  PrepareOutputs(workspace, problems_, 0);
+  PrepareOutputs(workspace, problems_, 0, files_.Log());
   EXPECT_EQ(ReadFile(workspace.FusionCfgPath()), "a.jpg\n");
 }
 
 TEST_F(OutputCheckTest, TooSmallADiskIsToldWithNeededAndFreeBytes) {
   const Workspace workspace = files_.Open();
   const uint64_t needed = uint64_t{1} << 62;
-  const auto error =
-      ErrorOf([&] { PrepareOutputs(workspace, problems_, needed); });
+  const auto error = ErrorOf(
+      [&] { PrepareOutputs(workspace, problems_, needed, files_.Log()); });
   ASSERT_TRUE(error);
   EXPECT_EQ(error->code(), ErrorCode::kOutOfResources);
   EXPECT_THAT(error->what(), HasSubstr(std::to_string(needed)));
@@ -63,16 +63,55 @@ TEST_F(OutputCheckTest, TooSmallADiskIsToldWithNeededAndFreeBytes) {
 TEST_F(OutputCheckTest, AFileInPlaceOfAFolderIsNamed) {
   const Workspace workspace = files_.Open();
   WriteFile(workspace.StereoPath() / "normal_maps", "a file");
-  const auto error = ErrorOf([&] { PrepareOutputs(workspace, problems_, 0); });
+  const auto error =
+      ErrorOf([&] { PrepareOutputs(workspace, problems_, 0, files_.Log()); });
   ASSERT_TRUE(error);
   EXPECT_EQ(error->code(), ErrorCode::kBadInput);
   EXPECT_THAT(error->what(), HasSubstr("normal_maps"));
 }
 
+TEST_F(OutputCheckTest, NamesTooLongForTheirMapsAreToldBeforehand) {
+  for (const size_t length : {239, 240}) {
+    TestWorkspace files;
+    files.AddImage(std::string(length, 'a'), {0, 0, 0});
+    files.AddImage("b.jpg", {1, 0, 0});
+    const Workspace workspace = files.Open();
+    const auto error =
+        ErrorOf([&] { PrepareOutputs(workspace, problems_, 0, files.Log()); });
+    ASSERT_EQ(error.has_value(), length == 240);
+    if (!error) continue;
+    EXPECT_EQ(error->code(), ErrorCode::kBadInput);
+    EXPECT_THAT(error->what(), HasSubstr("'aaa"));
+    EXPECT_THAT(error->what(), HasSubstr("256 bytes"));
+  }
+}
+
+TEST_F(OutputCheckTest, AFusionCfgOfNoUseIsToldOnce) {
+  struct Case {
+    const char* text;
+    std::vector<const char*> words;  // none: no warning
+  };
+  for (const Case& c : {Case{"a.jpg\n\n", {}},
+                        Case{"a.jpg\nold1.jpg\ncam1\\day2\\x.jpg\n",
+                             {"2 images", "line 2, 'old1.jpg'", "delete it"}},
+                        Case{"\n", {"no image", "delete it"}}}) {
+    TestWorkspace files;
+    files.AddImage("a.jpg", {0, 0, 0});
+    files.AddImage("cam1/day2/x.jpg", {1, 0, 0});
+    const Workspace workspace = files.Open();
+    WriteFile(workspace.FusionCfgPath(), c.text);
+    PrepareOutputs(workspace, problems_, 0, files.Log());
+    EXPECT_EQ(ReadFile(workspace.FusionCfgPath()), c.text);
+    ASSERT_EQ(files.Warnings().size(), c.words.empty() ? 0u : 1u) << c.text;
+    for (const char* word : c.words)
+      EXPECT_THAT(files.Warnings()[0], HasSubstr(word));
+  }
+}
+
 // In a child, since permission bits mean nothing to root.
 TEST_F(OutputCheckTest, AFolderWithoutPermissionIsNamed) {
   const Workspace workspace = files_.Open();
-  PrepareOutputs(workspace, problems_, 0);
+  PrepareOutputs(workspace, problems_, 0, files_.Log());
   const fs::path folder = workspace.StereoPath() / "depth_maps";
   fs::permissions(files_.path(), fs::perms::all);
   for (const auto& entry : fs::recursive_directory_iterator(files_.path())) {
@@ -83,7 +122,7 @@ TEST_F(OutputCheckTest, AFolderWithoutPermissionIsNamed) {
   if (pid == 0) {
     if (geteuid() == 0 && setuid(65534) != 0) _exit(100);
     const auto error =
-        ErrorOf([&] { PrepareOutputs(workspace, problems_, 0); });
+        ErrorOf([&] { PrepareOutputs(workspace, problems_, 0, files_.Log()); });
     if (!error) _exit(101);
     const bool named =
         std::string(error->what()).find("depth_maps") != std::string::npos;

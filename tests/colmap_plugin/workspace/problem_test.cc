@@ -55,7 +55,76 @@ TEST_F(ProblemTest, FollowTheFile) {
   EXPECT_THAT(problems[1].src_images, ElementsAre(3, 1, 2));
   EXPECT_EQ(problems[2].ref_image, 1);
   EXPECT_THAT(problems[2].src_images, ElementsAre(2));
+  EXPECT_THAT(files_.Warnings(),
+              ElementsAre(testing::AllOf(HasSubstr("patch-match.cfg:10:"),
+                                         HasSubstr("'4.jpg'"),
+                                         HasSubstr("'__auto__, 20'"))));
+}
+
+TEST_F(ProblemTest, FormsThatMeanSomethingElseAreToldWithLineAndRightForm) {
+  struct Case {
+    const char* cfg;
+    std::vector<const char*> words;
+  };
+  for (const Case& c :
+       {Case{"__auto__, 20\n", {":1:", "'__auto__, 20' stands", "two lines"}},
+        Case{"0.jpg\n__auto__, 20\n__auto__, 20\n1.jpg\n",
+             {":3:", "'__auto__, 20' stands", "two lines"}},
+        Case{"0.jpg\n1.jpg\n2.jpg\n", {":3:", "'2.jpg'", "two lines"}},
+        Case{"0.jpg\n1.jpg 2.jpg\t3.jpg\n", {":2:", "commas"}},
+        Case{"0.jpg\n\n__auto__\n", {":3:", "'__auto__, 20'"}},
+        Case{"0.jpg\n__ALL__\n", {":2:", "'__all__'"}},
+        Case{"0.jpg\n__auto__, 20\n#5.jpg\n__auto__, 20\n",
+             {":3:", "'#5.jpg'", "comments"}}}) {
+    SCOPED_TRACE(c.cfg);
+    TestWorkspace files;
+    for (const char* name : {"0.jpg", "1.jpg", "2.jpg", "3.jpg", "#5.jpg"})
+      files.AddImage(name, {0, 0, 0});
+    files.AddPoint({0, 0, 5}, {0, 1});
+    files.WriteCfg(c.cfg);
+    const auto error =
+        ErrorOf([&] { ReadProblems(files.Open(), {}, files.Log()); });
+    ASSERT_TRUE(error);
+    EXPECT_EQ(error->code(), ErrorCode::kBadInput);
+    EXPECT_THAT(error->what(), HasSubstr("patch-match.cfg"));
+    for (const char* word : c.words)
+      EXPECT_THAT(error->what(), HasSubstr(word));
+  }
+}
+
+TEST_F(ProblemTest, APlainListOfNamesIsReadAsColmapDoesWithOneWarning) {
+  const auto problems = Read("0.jpg\n1.jpg\n2.jpg\n3.jpg\n");
+  EXPECT_EQ(problems.size(), 2u);
+  EXPECT_THAT(files_.Warnings(),
+              ElementsAre(testing::AllOf(HasSubstr("patch-match.cfg:2:"),
+                                         HasSubstr("'1.jpg'"),
+                                         HasSubstr("2 lines like it"))));
+}
+
+TEST_F(ProblemTest, OneSourceEachIsNoListOfNames) {
+  EXPECT_EQ(Read("0.jpg\n1.jpg\n1.jpg\n0.jpg\n").size(), 2u);
   EXPECT_THAT(files_.Warnings(), IsEmpty());
+}
+
+TEST_F(ProblemTest, AMissingFileTellsWhatBelongsIntoIt) {
+  const auto error = ErrorOf([&] { ReadProblems(files_.Open(), {}, nullptr); });
+  ASSERT_TRUE(error);
+  EXPECT_THAT(error->what(), HasSubstr("patch-match.cfg is missing"));
+}
+
+TEST_F(ProblemTest, ImagesWithoutPictureAreNoSourcesAndFailAsReferences) {
+  files_.LeaveOutFile("1.jpg");
+  auto problems = Read(
+      "2.jpg\n__auto__, 2\n1.jpg\n__auto__, 20\n"
+      "3.jpg\n1.jpg,\n0.jpg\n__all__\n");
+  const Workspace workspace = files_.Open();
+  ASSERT_EQ(problems.size(), 4u);
+  EXPECT_THAT(problems[0].src_images, ElementsAre(0, 3));  // still two
+  EXPECT_TRUE(CanBeComputed(workspace, problems[0]));
+  EXPECT_FALSE(CanBeComputed(workspace, problems[1]));
+  EXPECT_THAT(problems[2].src_images, IsEmpty());
+  EXPECT_FALSE(CanBeComputed(workspace, problems[2]));
+  EXPECT_THAT(problems[3].src_images, ElementsAre(2, 3, 4));
 }
 
 TEST_F(ProblemTest, AllTakesEveryOtherImageOverlappingOnesFirst) {
@@ -82,7 +151,7 @@ TEST_F(ProblemTest, ReferenceAndRepeatsAreNoSources) {
 
 TEST_F(ProblemTest, ImagesWithoutSourcesAreSkippedWithAWarning) {
   const auto problems =
-      Read("4.jpg\n__auto__, 20\n0.jpg\n0.jpg\n1.jpg\n2.jpg\n");
+      Read("4.jpg\n__auto__, 20\n0.jpg\n0.jpg\n1.jpg\n2.jpg, 3.jpg\n");
   ASSERT_EQ(problems.size(), 1u);
   EXPECT_EQ(problems[0].ref_image, 1);
   EXPECT_THAT(files_.Warnings(),
@@ -112,20 +181,20 @@ TEST_F(ProblemTest, OneSourceIsEnough) {
 }
 
 TEST_F(ProblemTest, ARepeatedReferenceKeepsItsFirstEntry) {
-  const auto problems = Read("0.jpg\n1.jpg\n0.jpg\n2.jpg\n");
+  const auto problems = Read("0.jpg\n1.jpg, 3.jpg\n0.jpg\n__all__\n");
   ASSERT_EQ(problems.size(), 1u);
-  EXPECT_THAT(problems[0].src_images, ElementsAre(1));
+  EXPECT_THAT(problems[0].src_images, ElementsAre(1, 3));
   EXPECT_THAT(files_.Warnings(), ElementsAre(HasSubstr("0.jpg")));
 }
 
 TEST_F(ProblemTest, UnknownNamesAreErrorsWithFileAndLine) {
   for (const char* cfg : {"0.jpg\n1.jpg\n\nabsent.jpg\n__auto__, 20\n",
-                          "0.jpg\n1.jpg\n\n1.jpg\n0.jpg, absent.jpg\n"}) {
+                          "0.jpg\n1.jpg\n1.jpg\n0.jpg, absent.jpg\n"}) {
     const auto error = ErrorOfReading(cfg);
     ASSERT_TRUE(error) << cfg;
     EXPECT_EQ(error->code(), ErrorCode::kBadInput);
     EXPECT_THAT(error->what(), HasSubstr("patch-match.cfg"));
-    EXPECT_THAT(error->what(), HasSubstr("line 4"));
+    EXPECT_THAT(error->what(), HasSubstr("patch-match.cfg:4:"));
     EXPECT_THAT(error->what(), HasSubstr("absent.jpg"));
   }
 }
@@ -248,6 +317,18 @@ TEST_F(WithoutTracksTest, AnImageWithoutTracksHelpsTheOthers) {
   EXPECT_THAT(files_.Warnings(), IsEmpty());
 }
 
+TEST_F(WithoutTracksTest, TheNumberOfSourcesIsMetWithImagesThatHaveAPicture) {
+  for (const char* name : {"5.jpg", "7.jpg"}) files_.LeaveOutFile(name);
+  files_.WriteCfg("6.jpg\n__auto__, 4\n5.jpg\n__auto__, 4\n");
+  const Workspace workspace = files_.Open();
+  const auto problems = ReadProblems(workspace, {}, files_.Log());
+  ASSERT_EQ(problems.size(), 2u);
+  EXPECT_THAT(problems[0].src_images,
+              testing::UnorderedElementsAre(3, 4, 8, 9));
+  EXPECT_EQ(problems[1].src_images.size(), 4u);
+  EXPECT_FALSE(CanBeComputed(workspace, problems[1]));
+}
+
 TEST_F(WithoutTracksTest, TracksOfOneImageDoNotHelpFusion) {
   for (int i = 0; i < 20 * kNumImages; ++i) {
     files_.AddPoint({std::cos(i), std::cos(2.1 * i), std::sin(i)},
@@ -268,7 +349,7 @@ TEST_F(ProblemTest, UnusableImagesAreDroppedWithAWarning) {
   EXPECT_THAT(problems[0].src_images, ElementsAre(1));
   EXPECT_THAT(problems[1].src_images, ElementsAre(0, 1, 2, 4));
   EXPECT_THAT(files_.Warnings(),
-              ElementsAre(HasSubstr("broken.jpg is not used"),
+              ElementsAre(HasSubstr("1 of 6 images not used"),
                           HasSubstr("source image broken.jpg of 0.jpg"),
                           HasSubstr("reference image broken.jpg")));
 }

@@ -65,5 +65,24 @@ TEST_F(SourceProblemsTest, TakeNoMoreSourcesThanAllowed) {
   EXPECT_THAT(problems[0].src_images, ElementsAre(2));
 }
 
+TEST_F(SourceProblemsTest, ImagesWithoutPictureHaveNoneAndAreNoSources) {
+  files_.LeaveOutFile("2.jpg");
+  const auto problems = SourcesOf("0.jpg\n__auto__, 1\n2.jpg\n3.jpg, 4.jpg\n");
+  // Nor has the reference without picture brought its own along.
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_EQ(problems[0].ref_image, 1);
+  EXPECT_THAT(problems[0].src_images, ElementsAre(0, 3));
+}
+
+TEST_F(SourceProblemsTest, TheNumberOfSourcesIsMetWithPictures) {
+  files_.LeaveOutFile("2.jpg");
+  ProblemOptions options;
+  options.max_num_src_images = 1;
+  const auto problems = SourcesOf("0.jpg\n__auto__, 20\n", options);
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_EQ(problems[0].ref_image, 1);
+  EXPECT_THAT(problems[0].src_images, ElementsAre(0));
+}
+
 }  // namespace
 }  // namespace hpm

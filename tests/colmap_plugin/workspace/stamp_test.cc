@@ -17,7 +17,7 @@ TEST(Stamp, GivesBackTheFingerprintPerImageAndStage) {
   EXPECT_EQ(ReadStampFingerprint(state.path(), "cam2/a.jpg", "geometric"),
             std::nullopt);
   const nlohmann::json stamp = nlohmann::json::parse(
-      ReadFile(state.path() / "stamps/cam1/a.jpg.photometric.json"));
+      ReadFile(state.path() / "stamps/photometric/cam1/a.jpg.json"));
   EXPECT_EQ(stamp["seconds"], 1.5);
 }
 

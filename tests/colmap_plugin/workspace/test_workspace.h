@@ -6,7 +6,10 @@
 #include "tests/base/scratch_folder.h"
 
 #include <functional>
+#include <map>
 #include <optional>
+#include <set>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -46,6 +49,9 @@ class TestWorkspace {
 
   void AddCamera(int id, const std::string& model_size_params) {
     cameras_ += fmt::format("{} {}\n", id, model_size_params);
+    std::istringstream words(model_size_params);
+    std::string model;
+    words >> model >> sizes_[id].first >> sizes_[id].second;
   }
 
   // Looks along +z of the world from `center`.
@@ -63,8 +69,13 @@ class TestWorkspace {
                    int camera_id = 1) {
     images_ +=
         fmt::format("{} {} {} {}\n\n", 10 + num_images_, pose, camera_id, name);
+    names_.emplace_back(name, camera_id);
     return num_images_++;
   }
+
+  // Images have a file of their camera's size, or the one that the test wrote,
+  // but for these.
+  void LeaveOutFile(const std::string& name) { without_file_.insert(name); }
 
   void AddPoint(const Eigen::Vector3d& xyz, const std::vector<int>& images) {
     points_ += fmt::format(
@@ -80,6 +91,7 @@ class TestWorkspace {
   const std::filesystem::path& path() const { return folder_.path(); }
 
   Workspace Open(int max_image_size = -1) {
+    WriteImageFiles();
     WriteFile(path() / "sparse/cameras.txt", cameras_);
     WriteFile(path() / "sparse/images.txt", images_);
     WriteFile(path() / "sparse/points3D.txt", points_);
@@ -107,7 +119,23 @@ class TestWorkspace {
   std::vector<std::string> Notes() const { return LinesOf(LogLevel::kInfo); }
 
  private:
+  void WriteImageFiles() const {
+    for (const auto& [name, camera] : names_) {
+      const std::filesystem::path file = path() / "images" / name;
+      if (without_file_.count(name) > 0 || name.front() == '/' ||
+          name.find("..") != std::string::npos ||
+          std::filesystem::exists(file)) {
+        continue;
+      }
+      const auto [width, height] = sizes_.at(camera);
+      WriteFile(file, PngHeader(width, height));
+    }
+  }
+
   ScratchFolder folder_;
+  std::map<int, std::pair<uint32_t, uint32_t>> sizes_;  // of cameras
+  std::vector<std::pair<std::string, int>> names_;      // name, camera
+  std::set<std::string> without_file_;
   std::string cameras_;
   std::string images_;
   std::string points_;

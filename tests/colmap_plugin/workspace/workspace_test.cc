@@ -28,14 +28,89 @@ TEST(Workspace, KnowsWhereFilesLie) {
   EXPECT_EQ(workspace.StatePath(), root / "stereo/hpm_mvs");
 }
 
-TEST(Workspace, MissingImageFilesAreNoError) {
+// All with one fault: one line, which tells their number and what became of the
+// first.
+TEST(Workspace, MissingImageFilesAreNamedInOneLine) {
+  struct Case {
+    const char* name;
+    const char* there;  // in images/ instead
+    std::vector<const char*> words;
+  };
+  for (const Case& c : {Case{"b.JPG", "b.jpg", {"'b.jpg'", "case"}},
+                        Case{"b.JPG", "b.png", {"'b.png'", "extension"}},
+                        Case{"D:\\x\\b.jpg", "b.jpg", {"relative"}},
+                        Case{"b.jpg", "", {"undistort"}}}) {
+    SCOPED_TRACE(c.name + std::string(" ") + c.there);
+    TestWorkspace files;
+    files.AddImage("a.jpg", {0, 0, 0});
+    files.AddImage(c.name, {1, 0, 0});
+    files.AddImage("sub/c.jpg", {2, 0, 0});
+    files.LeaveOutFile(c.name);
+    files.LeaveOutFile("sub/c.jpg");
+    if (*c.there) WriteFile(files.path() / "images" / c.there, "x");
+    const Workspace workspace = files.Open();
+    EXPECT_TRUE(workspace.has_picture(0));
+    EXPECT_FALSE(workspace.has_picture(1));
+    EXPECT_TRUE(workspace.usable(1));
+    EXPECT_EQ(workspace.camera(1).width, 160);
+    ASSERT_EQ(files.Warnings().size(), 1u);
+    EXPECT_THAT(files.Warnings()[0], HasSubstr("2 of 3 images"));
+    EXPECT_THAT(files.Warnings()[0], HasSubstr(c.name));
+    for (const char* word : c.words)
+      EXPECT_THAT(files.Warnings()[0], HasSubstr(word));
+  }
+}
+
+TEST(Workspace, WithoutAnyImageFileIsAnErrorThatTellsWhy) {
+  for (const bool with_folder : {false, true}) {
+    TestWorkspace files;
+    for (const char* name : {"a.jpg", "b.jpg"}) {
+      files.AddImage(name, {0, 0, 0});
+      files.LeaveOutFile(name);
+    }
+    if (with_folder) {
+      std::filesystem::create_directories(files.path() / "images");
+      std::filesystem::create_symlink("/nowhere/a.jpg",
+                                      files.path() / "images/a.jpg");
+    }
+    const auto error = ErrorOf([&] { files.Open(); });
+    ASSERT_TRUE(error);
+    EXPECT_EQ(error->code(), ErrorCode::kBadInput);
+    EXPECT_THAT(error->what(), HasSubstr("2 of 2"));
+    EXPECT_THAT(
+        error->what(),
+        HasSubstr(with_folder ? "/nowhere/a.jpg" : "images is missing"));
+    EXPECT_THAT(files.Warnings(), IsEmpty());
+  }
+}
+
+TEST(Workspace, BackslashesOfWindowsStandForSlashes) {
+  TestWorkspace files;
+  for (const char* name : {"cam\\a.jpg", "cam/b.jpg", "cam\\c.jpg"})
+    files.AddImage(name, {0, 0, 0});
+  files.LeaveOutFile("cam\\a.jpg");
+  WriteFile(files.path() / "images/cam/a.jpg", PngHeader(160, 120));
+  const Workspace workspace = files.Open();
+  EXPECT_EQ(workspace.ImagePath(0), files.path() / "images/cam/a.jpg");
+  EXPECT_EQ(workspace.ImagePath(2), files.path() / "images/cam\\c.jpg");
+  EXPECT_EQ(workspace.ImageIndex("cam/a.jpg"), 0);
+  EXPECT_EQ(workspace.ImageIndex("cam\\a.jpg"), 0);
+  EXPECT_EQ(workspace.ImageIndex("cam\\b.jpg"), 1);
+  // Where stereo_fusion looks.
+  EXPECT_EQ(workspace.MapPath(0, MapKind::kDepth, "geometric").filename(),
+            "cam\\a.jpg.geometric.bin");
+  EXPECT_THAT(files.Warnings(),
+              ElementsAre(testing::AllOf(HasSubstr("1 of 3"),
+                                         HasSubstr("cam\\a.jpg"),
+                                         HasSubstr("stereo_fusion"))));
+}
+
+TEST(Workspace, BackslashesCannotLeaveTheFolder) {
   TestWorkspace files;
   files.AddImage("a.jpg", {0, 0, 0});
-  const Workspace workspace = files.Open();
-  EXPECT_TRUE(workspace.usable(0));
-  EXPECT_EQ(workspace.camera(0).width, 160);
-  EXPECT_THAT(files.Warnings(), IsEmpty());
-  EXPECT_THAT(files.Notes(), IsEmpty());
+  files.AddImage("..\\outside.jpg", {1, 0, 0});
+  WriteFile(files.path() / "outside.jpg", PngHeader(160, 120));
+  EXPECT_FALSE(files.Open().has_picture(1));
 }
 
 TEST(Workspace, ScalesCamerasToTheImageFilesWithOneNote) {
@@ -52,18 +127,38 @@ TEST(Workspace, ScalesCamerasToTheImageFilesWithOneNote) {
   EXPECT_FLOAT_EQ(workspace.camera(1).cx, 49.5f);
   EXPECT_EQ(workspace.camera(2).width, 320);
   EXPECT_THAT(files.Warnings(), IsEmpty());
-  EXPECT_THAT(files.Notes(), ElementsAre(HasSubstr("2 images")));
+  EXPECT_THAT(files.Notes(), ElementsAre(HasSubstr("2 of 3 images")));
   EXPECT_THAT(files.Notes()[0],
               HasSubstr("b.png is 100x75, its camera 160x120"));
 }
 
-TEST(Workspace, WarnsOfOtherProportions) {
-  TestWorkspace files;
-  files.AddImage("turned.png", {0, 0, 0});
-  WriteFile(files.path() / "images/turned.png", PngHeader(120, 160));
-  files.Open();
-  EXPECT_THAT(files.Warnings(),
-              ElementsAre(HasSubstr("turned.png is 120x160")));
+TEST(Workspace, PicturesOfOtherProportionsAreNotUsed) {
+  struct Case {
+    uint32_t width, height;
+    bool fits;
+  };
+  for (const Case& c : {Case{120, 160, false},  // turned
+                        Case{150, 120, false},  // cut
+                        Case{164, 124, true},   // by rounding at most
+                        Case{107, 80, true},
+                        Case{1, 1, true},
+                        Case{1601, 1199, true},
+                        Case{1600, 1230, false}}) {
+    SCOPED_TRACE(fmt::format("{}x{}", c.width, c.height));
+    TestWorkspace files;
+    files.AddImage("a.png", {0, 0, 0});
+    files.AddImage("b.png", {1, 0, 0});
+    WriteFile(files.path() / "images/b.png", PngHeader(c.width, c.height));
+    EXPECT_EQ(files.Open().has_picture(1), c.fits);
+    EXPECT_EQ(files.Warnings().empty(), c.fits);
+    if (c.fits) continue;
+    EXPECT_THAT(files.Warnings(),
+                ElementsAre(testing::AllOf(
+                    HasSubstr("1 of 2 images"),
+                    HasSubstr(fmt::format("b.png is {}x{}", c.width, c.height)),
+                    HasSubstr("rotation"),
+                    HasSubstr("EXIF"))));
+  }
 }
 
 TEST(Workspace, UnusableImagesKeepTheirIndexAndAreNamed) {
@@ -81,13 +176,57 @@ TEST(Workspace, UnusableImagesKeepTheirIndexAndAreNamed) {
   EXPECT_TRUE(workspace.usable(4));
   EXPECT_TRUE(workspace.usable(5));  // the same place twice is legal
   EXPECT_EQ(workspace.ImageIndex("good.jpg"), 4);
+  // One line for each fault, with its first image.
   EXPECT_THAT(files.Warnings(),
-              ElementsAre(HasSubstr("fisheye.jpg"),
-                          HasSubstr("negative.jpg"),
-                          HasSubstr("nan.jpg"),
-                          HasSubstr("zero.jpg")));
-  EXPECT_THAT(files.Warnings()[0], HasSubstr("OPENCV_FISHEYE"));
+              testing::UnorderedElementsAre(
+                  HasSubstr("1 of 6 images not used, the first: fisheye.jpg"),
+                  HasSubstr("2 of 6 images not used, the first: negative.jpg"),
+                  HasSubstr("1 of 6 images not used, the first: zero.jpg")));
+}
+
+TEST(Workspace, OneFaultOfManyCamerasIsOneWarning) {
+  TestWorkspace files;
+  files.AddImage("a.jpg", {0, 0, 0});
+  for (int camera = 2; camera < 6; ++camera) {
+    files.AddCamera(
+        camera,
+        fmt::format("OPENCV 160 120 100 100 80 60 0.0{} 0 0 0", camera));
+    files.AddImage(fmt::format("{}.jpg", camera), {0, 0, 0}, camera);
+  }
+  files.Open();
+  ASSERT_EQ(files.Warnings().size(), 1u);
+  EXPECT_THAT(files.Warnings()[0], HasSubstr("4 of 5 images"));
+  EXPECT_THAT(files.Warnings()[0], HasSubstr("2.jpg"));
   EXPECT_THAT(files.Warnings()[0], HasSubstr("image_undistorter"));
+}
+
+TEST(Workspace, TracksOfImagesThatWereFilteredOutAreOneNote) {
+  TestWorkspace files;
+  files.AddImage("a.jpg", {0, 0, 0});
+  files.AddPoint({0, 0, 5}, {0, 7});
+  files.AddPoint({0, 0, 5}, {0, 8});
+  files.Open();
+  EXPECT_THAT(files.Warnings(), IsEmpty());
+  EXPECT_THAT(files.Notes(),
+              ElementsAre(testing::AllOf(HasSubstr("2 of 4 observations"),
+                                         HasSubstr("id 17"))));
+  files.AddPoint({0, 0, 5}, {8});  // now most of them
+  files.Open();
+  EXPECT_THAT(files.Warnings(), ElementsAre(HasSubstr("one model")));
+}
+
+TEST(Workspace, AFolderThatIsNoWorkspaceIsNamed) {
+  const ScratchFolder folder;
+  WorkspaceOptions options;
+  options.path = folder / "nowhere";
+  auto error = ErrorOf([&] { Workspace(options, nullptr); });
+  ASSERT_TRUE(error);
+  EXPECT_THAT(error->what(), HasSubstr("no folder"));
+  std::filesystem::create_directories(folder / "dense/sparse");
+  options.path = folder.path();
+  error = ErrorOf([&] { Workspace(options, nullptr); });
+  ASSERT_TRUE(error);
+  EXPECT_THAT(error->what(), HasSubstr((folder / "dense").string() + " has"));
 }
 
 TEST(Workspace, WithoutAnyUsableImageIsAnError) {
@@ -157,7 +296,7 @@ TEST(Workspace, PmvsFolderGetsItsStereoFolderAndCfgFiles) {
   EXPECT_EQ(workspace.camera(1).cy, 29.5f);
   EXPECT_EQ(ReadFile(workspace.FusionCfgPath()),
             "00000000.jpg\n00000001.jpg\n");
-  const auto entries = ReadPatchMatchCfg(workspace.PatchMatchCfgPath());
+  const auto entries = ReadPatchMatchCfg(workspace.PatchMatchCfgPath()).entries;
   ASSERT_EQ(entries.size(), 2u);
   EXPECT_EQ(entries[1].ref_name, "00000001.jpg");
   EXPECT_EQ(entries[1].max_num_auto, 20);
