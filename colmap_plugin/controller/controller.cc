@@ -272,8 +272,10 @@ RunSummary PatchMatchController::Run() {
     }
   }
   lock.ThrowIfLost();
+  // In this order: a cut that is cut short is made good from the inner maps.
+  if (!statistics.AnyFailed())
+    CutInputMaps(workspace, problems, plan, lock, stop);
   RemoveInnerMaps(workspace);
-  if (!statistics.AnyFailed()) CutInputMaps(workspace, problems, plan);
 
   std::vector<std::string> names;
   for (size_t p = 0; p < num_references; ++p)

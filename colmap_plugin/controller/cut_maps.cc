@@ -32,12 +32,16 @@ void CutMaps(const Workspace& workspace,
 
 void CutInputMaps(const Workspace& workspace,
                   const std::vector<StereoProblem>& problems,
-                  const StagePlan& plan) {
+                  const StagePlan& plan,
+                  const RunLock& lock,
+                  const CancelToken& cancel) {
   for (int s = 0; s + 1 < static_cast<int>(plan.stages().size()); ++s) {
     for (int p = 0; p < static_cast<int>(problems.size()); ++p) {
       const int image = problems[p].ref_image;
       if (std::isfinite(problems[p].published.max) && plan.IsPublic(s, image) &&
           plan.HasCompleteMaps(s, image)) {
+        cancel.ThrowIfCancelled();
+        lock.ThrowIfLost();
         CutMaps(workspace, plan, s, p, problems[p]);
       }
     }

@@ -7,11 +7,13 @@ namespace hpm {
 
 NeededViews::NeededViews(const ViewSet& views,
                          const HypothesisMap& map,
-                         const FilterParams& filter)
+                         const FilterParams& filter,
+                         bool geometric)
     : views_(views),
       map_(map),
       min_num_consistent_(filter.min_num_consistent),
-      max_cos_(std::cos(filter.min_triangulation_angle)) {
+      max_cos_(std::cos(filter.min_triangulation_angle)),
+      geometric_(geometric) {
   for (const View& src : views.srcs) {
     warps_.push_back(MakeViewWarp(views.ref.camera, src.camera));
     centers_.push_back(CamFromWorld(views.ref.camera, Center(src.camera)));
@@ -34,6 +36,7 @@ int NeededViews::CountSeeing(size_t at) const {
   const PlaneSlope slope = SlopeOf(views_.ref.camera, plane);
   int count = 0;
   for (size_t j = 0; j < warps_.size(); ++j) {
+    if (geometric_ && views_.srcs[j].inverse_depth == nullptr) continue;
     const Vec3f to_src = centers_[j] - point;
     const float distance = Norm(to_src);
     if (!(distance > 0) || Dot(to_src, plane.normal) <= 0) continue;

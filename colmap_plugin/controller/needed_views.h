@@ -19,20 +19,23 @@ class NeededViews {
   // Keeps references to `views` and `map`.
   NeededViews(const ViewSet& views,
               const HypothesisMap& map,
-              const FilterParams& filter);
+              const FilterParams& filter,
+              bool geometric);
 
   // Of pixel row * width + col.
   int At(size_t at) const;
 
  private:
   // Sources into whose image the pixel falls, from whose side its plane is
-  // seen, and at a sufficient angle.
+  // seen, and at a sufficient angle; after geometric passes those with a depth
+  // map: no other can confirm it.
   int CountSeeing(size_t at) const;
 
   const ViewSet& views_;
   const HypothesisMap& map_;
   const int min_num_consistent_;
   const float max_cos_;
+  const bool geometric_;
   std::vector<ViewWarp> warps_;
   std::vector<Vec3f> centers_;  // of the sources, reference camera frame
 };

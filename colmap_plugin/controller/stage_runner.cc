@@ -168,9 +168,10 @@ void StageRunner::Publish(int stage,
         num_without_maps_ < static_cast<int>(views.srcs.size());
     consistent = backend_->ConsistentViews(map, params, geometric, control);
     keep.resize(consistent.size());
-    const NeededViews needed(views, map, params);
+    const NeededViews needed(views, map, params, geometric);
     for (size_t i = 0; i < keep.size(); ++i) {
-      keep[i] = __builtin_popcount(consistent[i]) >= needed.At(i);
+      const int num = __builtin_popcount(consistent[i]);
+      keep[i] = num >= params.min_num_consistent && num >= needed.At(i);
     }
     result->losses =
         CountFilterLosses(views, map, consistent, keep, params, geometric);

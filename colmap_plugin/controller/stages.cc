@@ -14,7 +14,7 @@ namespace hpm {
 namespace {
 
 // Raise when the same options give other maps.
-constexpr int kAlgorithmVersion = 7;
+constexpr int kAlgorithmVersion = 8;
 
 constexpr const char* kLevelPrefix = "level_";
 constexpr const char* kGeometricPrefix = "geometric_";
@@ -276,7 +276,9 @@ bool StagePlan::IsFinished(int s, int p, bool may_be_cut) {
   }
   if (!HasCompleteMaps(s, image)) {
     const bool is_cut = StampOf(s, image) == CutFingerprintOf(s, p);
-    if (!is_cut) found_foreign_maps_ = true;
+    const std::optional<std::string> stamp = StampOf(s, image);
+    if (!is_cut && stamp != IncompleteFingerprintOf(s, p))
+      found_foreign_maps_ = true;
     if (!is_cut || !may_be_cut) return false;
   }
   const Camera camera = CameraOf(s, image);

@@ -109,8 +109,9 @@ std::optional<ImageSize> BmpSize(HeaderReader& reader) {
 // Of all samples of a pixel the first speaks for the others.
 SampleDepth DepthOf(uint32_t bits, uint32_t format) {
   constexpr uint32_t kUnsigned = 1;
+  if (bits <= 8) return SampleDepth::k8;  // whatever they mean
   if (format != kUnsigned || bits > 16) return SampleDepth::kOther;
-  return bits > 8 ? SampleDepth::k16 : SampleDepth::k8;
+  return SampleDepth::k16;
 }
 
 // TIFF 6.0, section 2: ImageWidth, ImageLength, BitsPerSample and SampleFormat

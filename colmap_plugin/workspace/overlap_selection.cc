@@ -67,21 +67,23 @@ std::vector<int> OverlapSelector::Select(
 std::vector<Eigen::Vector3d> OverlapSelector::PointsOf(
     int image, const DepthRange& range) const {
   std::vector<Eigen::Vector3d> points;
-  const std::vector<SeenPoints::SeenPoint> seen = seen_.ForImage(image);
-  if (seen.size() >= kEnoughPoints) {
-    const size_t step = seen.size() / MaxPoints(views_.size()) + 1;
-    for (size_t i = 0; i < seen.size(); i += step)
-      points.push_back(seen[i].xyz);
-    return points;
+  for (const SeenPoints::SeenPoint& seen : seen_.ForImage(image))
+    points.push_back(seen.xyz);
+  if (points.size() < kEnoughPoints) {
+    points.clear();
+    constexpr int kNumDepths = 8;
+    for (int i = 0; i < kNumDepths; ++i) {
+      const double depth =
+          range.min * std::pow(range.max / range.min, (i + 0.5) / kNumDepths);
+      for (const Eigen::Vector3d& point : views_.GridAt(image, depth))
+        points.push_back(point);
+    }
   }
-  constexpr int kNumDepths = 8;
-  for (int i = 0; i < kNumDepths; ++i) {
-    const double depth =
-        range.min * std::pow(range.max / range.min, (i + 0.5) / kNumDepths);
-    for (const Eigen::Vector3d& point : views_.GridAt(image, depth))
-      points.push_back(point);
-  }
-  return points;
+  size_t step = points.size() / MaxPoints(views_.size()) + 1;
+  if (step % 5 == 0) ++step;  // else one column of the 5x5 grid stands for all
+  std::vector<Eigen::Vector3d> some;
+  for (size_t i = 0; i < points.size(); i += step) some.push_back(points[i]);
+  return some;
 }
 
 }  // namespace hpm

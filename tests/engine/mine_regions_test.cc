@@ -138,10 +138,11 @@ TEST_F(MineRegionsTest, ViewsThatDisagreeHaveNoSay) {
 }
 
 TEST_F(MineRegionsTest, WhatNoBelievedPlaneExplainsIsMarked) {
-  EXPECT_THAT(MineAll().unexplained, testing::Each(false));
+  const size_t size = map_.planes.size();
+  EXPECT_EQ(MineAll().unexplained, std::vector<bool>(size, false));
   slope_ = 10;
   matching_scale_ = 0.8f;
-  EXPECT_THAT(MineAll().unexplained, testing::Each(true));
+  EXPECT_EQ(MineAll().unexplained, std::vector<bool>(size, true));
 }
 
 // A roof below a sky: windows at the rim match best at the depth of the roof,
@@ -158,7 +159,13 @@ TEST_F(MineRegionsTest, WindowsThatReachOverTheRimAreNoEvidence) {
   first_sighted_row_ = kSkyline - params_.patch_radius;
   for (int at = 0; at < first_sighted_row_ * kWidth; ++at)
     map_.planes[at].distance *= 1.3f;  // nothing agrees in the sky
-  for (const Plane& prior : Mine()) EXPECT_EQ(prior.distance, 0);
+  const MinedRegions mined = MineAll();
+  ASSERT_EQ(mined.priors.size(), map_.planes.size());
+  for (const Plane& prior : mined.priors) EXPECT_EQ(prior.distance, 0);
+  EXPECT_TRUE(mined.unexplained[0]);
+  // What lies at the rim is near texture; see kRimWidth.
+  EXPECT_FALSE(mined.unexplained[(kSkyline - 4) * kWidth]);
+  EXPECT_FALSE(mined.unexplained[(kHeight - 10) * kWidth]);
 }
 
 // All depth maps agree on a plane, but the images match better beside it.

@@ -61,7 +61,7 @@ class FilterLossesTest : public testing::Test {
   }
 
   FilterLosses Count() const {
-    const NeededViews needed(views_, map_, filter_);
+    const NeededViews needed(views_, map_, filter_, geometric_);
     std::vector<bool> keep;
     for (size_t i = 0; i < consistent_.size(); ++i)
       keep.push_back(__builtin_popcount(consistent_[i]) >= needed.At(i));
@@ -125,6 +125,15 @@ TEST_F(FilterLossesTest, UnexplainedPixelsNeedMostOfThoseThatSeeThem) {
   ASSERT_EQ(losses.count(FilterCriterion::kUnexplained), 1u);
   EXPECT_GT(losses.at(FilterCriterion::kUnexplained), 0.7);
   std::fill(consistent_.begin(), consistent_.end(), 0b0111);
+  EXPECT_THAT(Count(), IsEmpty());
+}
+
+// Else a run in which the maps of many sources failed would lose them all.
+TEST_F(FilterLossesTest, SourcesWithoutMapsAreNotNeeded) {
+  for (const float x : {0.3f, -0.3f}) AddSource(x, kDepth);
+  for (const float x : {0.4f, -0.4f}) AddSource(x, 0);
+  std::fill(consistent_.begin(), consistent_.end(), 0b0011);
+  map_.unexplained.assign(map_.planes.size(), true);
   EXPECT_THAT(Count(), IsEmpty());
 }
 
