@@ -16,21 +16,22 @@ double SamplingRatio(const Camera& ref,
                      const Camera& src,
                      float depth_min,
                      float depth_max) {
-  constexpr int kNumSteps = 4;  // across the image and the depths
-  const auto middle_of = [](int step) {
-    return (static_cast<float>(step) + 0.5f) / kNumSteps;
+  constexpr int kNumAcross = 12, kNumDepths = 3;
+  const auto middle = [](int step, int count) {
+    return (static_cast<float>(step) + 0.5f) / static_cast<float>(count);
   };
   const double focal_ratio = std::sqrt(static_cast<double>(src.fx) * src.fy /
                                        (static_cast<double>(ref.fx) * ref.fy));
   std::vector<double> ratios;
-  for (int i = 0; i < kNumSteps * kNumSteps * kNumSteps; ++i) {
+  for (int i = 0; i < kNumAcross * kNumAcross * kNumDepths; ++i) {
     const float depth =
-        depth_min *
-        std::pow(depth_max / depth_min, middle_of(i / (kNumSteps * kNumSteps)));
+        depth_min * std::pow(depth_max / depth_min,
+                             middle(i / (kNumAcross * kNumAcross), kNumDepths));
     const Vec3f ray = RayAt(
         ref,
-        static_cast<float>(ref.width) * middle_of(i % kNumSteps),
-        static_cast<float>(ref.height) * middle_of(i / kNumSteps % kNumSteps));
+        static_cast<float>(ref.width) * middle(i % kNumAcross, kNumAcross),
+        static_cast<float>(ref.height) *
+            middle(i / kNumAcross % kNumAcross, kNumAcross));
     const Vec3f point = CamFromWorld(src, WorldFromCam(ref, depth * ray));
     if (!(point.z > 0)) continue;
     const float col = src.fx * point.x / point.z + src.cx;
