@@ -30,15 +30,16 @@ class InputCache {
  public:
   InputCache(const Workspace& workspace, uint64_t max_bytes);
 
-  // At the size of the camera, halved as the stage wants it. Throws
-  // UnreadableImage.
-  std::shared_ptr<const GrayImage> Image(int image);
+  // At the size of the camera, halved as the stage wants it and `more_levels`
+  // times more. Throws UnreadableImage.
+  std::shared_ptr<const GrayImage> Image(int image, int more_levels = 0);
 
-  // 1/z at pixel centres of an image's maps; null if they are absent or
-  // damaged.
+  // 1/z of an image's maps, of the camera's size, at the pixel centres of the
+  // camera halved `more_levels` times; null if they are absent or damaged.
   std::shared_ptr<const InverseDepthMap> InverseDepth(int image,
                                                       const Camera& camera,
-                                                      const StageFiles& files);
+                                                      const StageFiles& files,
+                                                      int more_levels = 0);
 
   // Forgets the inputs of the stage before; images are halved `level` times
   // from now on.

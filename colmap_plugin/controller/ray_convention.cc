@@ -2,6 +2,7 @@
 
 #include "src/base/error.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace hpm {
@@ -119,12 +120,38 @@ HypothesisMap ReadHypotheses(const std::filesystem::path& depth_path,
 
 std::vector<float> ReadInverseDepths(const std::filesystem::path& depth_path,
                                      const std::filesystem::path& normal_path,
-                                     const Camera& camera) {
+                                     const Camera& camera,
+                                     int more_levels) {
   const DepthAndNormal maps = ReadMaps(depth_path, normal_path, camera);
-  std::vector<float> inverse(maps.depth.data.size(), 0.0f);
-  ForEachPlane({maps.depth, maps.normal},
-               camera,
-               [&](size_t i, const Plane&, float z) { inverse[i] = 1 / z; });
+  const int factor = 1 << more_levels;
+  const Camera coarse = LevelCamera(camera, more_levels);
+  const auto middle_of = [&](int block, int size) {
+    return std::min(block * factor + (factor - 1) / 2, size - 1);
+  };
+  const auto center_of = [&](int block) {
+    return (static_cast<float>(block) + 0.5f) * static_cast<float>(factor) -
+           0.5f;
+  };
+  std::vector<float> inverse(static_cast<size_t>(coarse.width) * coarse.height,
+                             0.0f);
+  ForEachPlane(
+      {maps.depth, maps.normal},
+      camera,
+      [&](size_t i, const Plane& plane, float) {
+        const int row = static_cast<int>(i / camera.width);
+        const int col = static_cast<int>(i % camera.width);
+        const int block_row = row / factor;
+        const int block_col = col / factor;
+        if (row != middle_of(block_row, camera.height) ||
+            col != middle_of(block_col, camera.width)) {
+          return;
+        }
+        const float z =
+            DepthAt(camera, plane, center_of(block_col), center_of(block_row));
+        if (!std::isfinite(z) || !(z > 0)) return;
+        inverse[static_cast<size_t>(block_row) * coarse.width + block_col] =
+            1 / z;
+      });
   return inverse;
 }
 

@@ -41,10 +41,12 @@ HypothesisMap ReadHypotheses(const std::filesystem::path& depth_path,
                              const std::filesystem::path& normal_path,
                              const Camera& camera);
 
-// The same files, but only 1/z at the pixels' centres, 0 = none; takes less
-// memory.
+// The same files, but only 1/z at the centres of the pixels of the camera
+// halved `more_levels` times, 0 = none; takes less memory. A coarse pixel has
+// the plane of one pixel in its middle.
 std::vector<float> ReadInverseDepths(const std::filesystem::path& depth_path,
                                      const std::filesystem::path& normal_path,
-                                     const Camera& camera);
+                                     const Camera& camera,
+                                     int more_levels = 0);
 
 }  // namespace hpm

@@ -6,6 +6,7 @@
 #include "colmap_plugin/controller/ray_convention.h"
 #include "colmap_plugin/formats/consistency_graph.h"
 #include "colmap_plugin/formats/map_file.h"
+#include "colmap_plugin/workspace/source_level.h"
 #include "colmap_plugin/workspace/stamp.h"
 #include "src/base/error.h"
 #include "src/engine/phase_timer.h"
@@ -104,13 +105,16 @@ ViewSet StageRunner::MakeViews(int stage, int problem) {
   misses_maps_ = stage > 0 && !plan_.HasCompleteMaps(stage - 1, p.ref_image);
   if (spec.passes.empty()) return views;  // nothing is matched
   for (const int src : p.src_images) {
-    View view = {plan_.CameraAround(stage, src, p.ref_image),
-                 inputs_->Image(src),
+    const int level = SourceLevel(workspace_, p, src);
+    View view = {plan_.CameraAround(stage, src, p.ref_image, level),
+                 inputs_->Image(src, level),
                  nullptr};
     if (spec.geometric) {
       if (plan_.HasCurrentMaps(stage - 1, src)) {
-        view.inverse_depth = inputs_->InverseDepth(
-            src, view.camera, plan_.Files(stage - 1, src));
+        view.inverse_depth = inputs_->InverseDepth(src,
+                                                   plan_.CameraOf(stage, src),
+                                                   plan_.Files(stage - 1, src),
+                                                   level);
       }
       if (view.inverse_depth == nullptr) ++num_without_maps_;
       if (plan_.HasProblem(src) && (view.inverse_depth == nullptr ||

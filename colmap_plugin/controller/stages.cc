@@ -4,6 +4,7 @@
 #include "colmap_plugin/formats/consistency_graph.h"
 #include "colmap_plugin/formats/map_file.h"
 #include "colmap_plugin/workspace/fingerprint.h"
+#include "colmap_plugin/workspace/source_level.h"
 #include "colmap_plugin/workspace/stamp.h"
 #include "src/base/error.h"
 
@@ -113,8 +114,11 @@ std::string OwnFingerprint(const Workspace& workspace,
       .AddString(stage.name)
       .AddInt(options.random_seed);
   AddImage(workspace, problem.ref_image, problem.ref_image, &hash);
-  for (const int src : problem.src_images)
+  for (const int src : problem.src_images) {
     AddImage(workspace, src, problem.ref_image, &hash);
+    const int level = SourceLevel(workspace, problem, src);
+    if (level > 0) hash.AddString("halved").AddInt(level);
+  }
   hash.AddDouble(problem.depth_min).AddDouble(problem.depth_max);
   const MethodParams params = MakeMethodParams(options);
   AddMethod(params, &hash);

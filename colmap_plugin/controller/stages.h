@@ -81,10 +81,10 @@ class StagePlan {
   Camera CameraOf(int s, int image) const {
     return LevelCamera(workspace_.camera(image), stages_[s].spec.level);
   }
-  // The same around the centre of another one.
-  Camera CameraAround(int s, int image, int origin) const {
+  // The same around the centre of another one, halved `more_levels` times more.
+  Camera CameraAround(int s, int image, int origin, int more_levels) const {
     return LevelCamera(workspace_.CameraAround(image, origin),
-                       stages_[s].spec.level);
+                       stages_[s].spec.level + more_levels);
   }
   bool WritesGraph(int s, int image) const;
 

@@ -77,6 +77,19 @@ TEST_F(InputCacheTest, AStageGetsImagesOfItsLevel) {
   EXPECT_EQ(full->width, kWidth);
 }
 
+TEST_F(InputCacheTest, ASourceMayBeHalvedMoreThanTheStage) {
+  InputCache cache = MakeCache(kPlenty);
+  cache.StartStage(1);
+  const auto of_stage = cache.Image(1);
+  const auto coarser = cache.Image(1, 1);
+  ASSERT_NE(coarser, nullptr);
+  const Camera camera = LevelCamera(workspace_.camera(1), 2);
+  EXPECT_EQ(coarser->width, camera.width);
+  EXPECT_EQ(coarser->height, camera.height);
+  EXPECT_EQ(cache.Image(1), of_stage);
+  EXPECT_EQ(cache.Image(1, 1), coarser);
+}
+
 TEST_F(InputCacheTest, AnUnreadableImageIsNamed) {
   std::filesystem::resize_file(workspace_.ImagePath(2), 60);
   InputCache cache = MakeCache(kPlenty);
@@ -102,6 +115,20 @@ TEST_F(InputCacheTest, InverseDepthIsThatOfTheFilesAtPixelCentres) {
                 1,
                 1e-5);
   }
+}
+
+TEST_F(InputCacheTest, InverseDepthOfAHalvedSourceHasTheSizeOfItsCamera) {
+  const StageFiles files = WriteTruth(0);
+  const Camera& camera = workspace_.camera(0);
+  const Camera half = LevelCamera(camera, 1);
+  InputCache cache = MakeCache(kPlenty);
+  const auto full = cache.InverseDepth(0, camera, files);
+  const auto halved = cache.InverseDepth(0, camera, files, 1);
+  ASSERT_NE(halved, nullptr);
+  EXPECT_EQ(
+      halved->steps.size(),
+      static_cast<size_t>(kInverseDepthBytes) * half.width * half.height + 1);
+  EXPECT_EQ(cache.InverseDepth(0, camera, files), full);
 }
 
 TEST_F(InputCacheTest, DepthIsReadOnceUntilForgotten) {

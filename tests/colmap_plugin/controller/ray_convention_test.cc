@@ -1,5 +1,7 @@
 #include "colmap_plugin/controller/ray_convention.h"
 
+#include "tests/base/scratch_folder.h"
+
 #include <cmath>
 #include <random>
 
@@ -128,6 +130,58 @@ TEST(RayConvention, NormalsAreStoredPlaneByPlane) {
   EXPECT_EQ(files.normal.data[77], map.planes[77].normal.x);
   EXPECT_EQ(files.normal.data[size + 77], map.planes[77].normal.y);
   EXPECT_EQ(files.normal.data[2 * size + 77], map.planes[77].normal.z);
+}
+
+class HalvedInverseDepths : public testing::Test {
+ protected:
+  std::vector<float> Read(const HypothesisMap& map, int more_levels) {
+    const DepthAndNormal files = ToColmapMaps(map, kCamera);
+    WriteMap(folder_.path() / "depth.bin", files.depth);
+    WriteMap(folder_.path() / "normal.bin", files.normal);
+    return ReadInverseDepths(folder_.path() / "depth.bin",
+                             folder_.path() / "normal.bin",
+                             kCamera,
+                             more_levels);
+  }
+
+  ScratchFolder folder_;
+};
+
+// Also in the partial blocks at the right and lower border.
+TEST_F(HalvedInverseDepths, ArePlanesAtTheCentresOfTheCoarsePixels) {
+  HypothesisMap map(kWidth, kHeight);
+  const Plane wall =
+      PlaneFromDepth(kCamera, 10, 10, 5, Normalized({0.3f, -0.2f, -1}));
+  for (Plane& plane : map.planes) plane = wall;
+  for (int level = 0; level < 4; ++level) {
+    const Camera coarse = LevelCamera(kCamera, level);
+    const std::vector<float> inverse = Read(map, level);
+    ASSERT_EQ(inverse.size(),
+              static_cast<size_t>(coarse.width) * coarse.height);
+    for (int row = 0; row < coarse.height; ++row) {
+      for (int col = 0; col < coarse.width; ++col) {
+        const float z = DepthAt(
+            coarse, wall, static_cast<float>(col), static_cast<float>(row));
+        EXPECT_NEAR(inverse[static_cast<size_t>(row) * coarse.width + col] * z,
+                    1,
+                    1e-5);
+      }
+    }
+  }
+}
+
+TEST_F(HalvedInverseDepths, HolesStayHoles) {
+  HypothesisMap map = RandomPlanes();
+  const Camera coarse = LevelCamera(kCamera, 1);
+  for (int row = 4; row < 6; ++row) {
+    for (int col = 6; col < 8; ++col)
+      map.planes[row * kWidth + col] = {{0, 0, 0}, 0};
+  }
+  const std::vector<float> inverse = Read(map, 1);
+  for (size_t i = 0; i < inverse.size(); ++i) {
+    EXPECT_EQ(inverse[i] > 0, i != static_cast<size_t>(2 * coarse.width + 3))
+        << i;
+  }
 }
 
 TEST(RayConvention, PixelsNotKeptOrWithoutAPlaneAreZero) {

@@ -14,7 +14,9 @@ namespace hpm {
 class SceneWorkspace {
  public:
   explicit SceneWorkspace(const SceneOptions& options)
-      : views_(WriteWorkspace(MakeTiltedPlane(options), folder_.path())) {}
+      : SceneWorkspace(MakeTiltedPlane(options)) {}
+  explicit SceneWorkspace(const TestScene& scene)
+      : views_(WriteWorkspace(scene, folder_.path())) {}
   const std::filesystem::path& path() const { return folder_.path(); }
   const std::vector<RenderedView>& views() const { return views_; }
 

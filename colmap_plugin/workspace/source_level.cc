@@ -1,0 +1,72 @@
+#include "colmap_plugin/workspace/source_level.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace hpm {
+namespace {
+
+// Halved from here on: then the source still has at least three quarters of the
+// reference's pixels, in length.
+constexpr double kMinRatio = 1.5;
+
+// The source's pixels per pixel of the reference, in length, on surfaces that
+// face the cameras: the median over what both may see, 0 if that is nothing.
+double SamplingRatio(const Camera& ref,
+                     const Camera& src,
+                     float depth_min,
+                     float depth_max) {
+  constexpr int kNumAcross = 12, kNumDepths = 3;
+  const auto middle = [](int step, int count) {
+    return (static_cast<float>(step) + 0.5f) / static_cast<float>(count);
+  };
+  const double focal_ratio = std::sqrt(static_cast<double>(src.fx) * src.fy /
+                                       (static_cast<double>(ref.fx) * ref.fy));
+  std::vector<double> ratios;
+  for (int i = 0; i < kNumAcross * kNumAcross * kNumDepths; ++i) {
+    const float depth =
+        depth_min * std::pow(depth_max / depth_min,
+                             middle(i / (kNumAcross * kNumAcross), kNumDepths));
+    const Vec3f ray = RayAt(
+        ref,
+        static_cast<float>(ref.width) * middle(i % kNumAcross, kNumAcross),
+        static_cast<float>(ref.height) *
+            middle(i / kNumAcross % kNumAcross, kNumAcross));
+    const Vec3f point = CamFromWorld(src, WorldFromCam(ref, depth * ray));
+    if (!(point.z > 0)) continue;
+    const float col = src.fx * point.x / point.z + src.cx;
+    const float row = src.fy * point.y / point.z + src.cy;
+    if (col >= 0 && row >= 0 && col < static_cast<float>(src.width) &&
+        row < static_cast<float>(src.height)) {
+      ratios.push_back(focal_ratio * depth / point.z);
+    }
+  }
+  if (ratios.empty()) return 0;
+  const auto median =
+      ratios.begin() + static_cast<ptrdiff_t>(ratios.size() / 2);
+  std::nth_element(ratios.begin(), median, ratios.end());
+  return *median;
+}
+
+}  // namespace
+
+int SourceLevel(const Workspace& workspace,
+                const StereoProblem& problem,
+                int src_image) {
+  // Windows of fewer pixels across than this are no images any more.
+  constexpr int kMinSide = 16;
+  const Camera ref =
+      workspace.CameraAround(problem.ref_image, problem.ref_image);
+  const Camera src = workspace.CameraAround(src_image, problem.ref_image);
+  double ratio = SamplingRatio(ref, src, problem.depth_min, problem.depth_max);
+  int level = 0;
+  while (ratio >= kMinRatio &&
+         std::min(src.width, src.height) >> (level + 1) >= kMinSide) {
+    ratio /= 2;
+    ++level;
+  }
+  return level;
+}
+
+}  // namespace hpm
