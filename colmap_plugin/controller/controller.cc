@@ -7,6 +7,7 @@
 #include "colmap_plugin/controller/run_budget.h"
 #include "colmap_plugin/controller/run_statistics.h"
 #include "colmap_plugin/controller/stage_runner.h"
+#include "colmap_plugin/controller/thread_supply.h"
 #include "colmap_plugin/controller/worker_pool.h"
 #include "colmap_plugin/formats/atomic_file.h"
 #include "colmap_plugin/workspace/far_origin.h"
@@ -23,13 +24,10 @@
 #include <chrono>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <set>
 #include <utility>
 
 #include <fmt/format.h>
-#include <tbb/global_control.h>
-#include <tbb/task_arena.h>
 
 namespace hpm {
 namespace {
@@ -139,15 +137,8 @@ PatchMatchController::PatchMatchController(const ControllerOptions& options,
 
 RunSummary PatchMatchController::Run() {
   const auto start = std::chrono::steady_clock::now();
-  // For what runs outside the backend, such as the upsampling of priors.
-  std::optional<tbb::global_control> thread_limit;
-  if (options_.patch_match.num_threads > 0) {
-    thread_limit.emplace(tbb::global_control::max_allowed_parallelism,
-                         static_cast<size_t>(options_.patch_match.num_threads));
-  }
-  const int num_threads = options_.patch_match.num_threads > 0
-                              ? options_.patch_match.num_threads
-                              : tbb::this_task_arena::max_concurrency();
+  const ThreadSupply threads(options_.patch_match.num_threads, log_);
+  const int num_threads = threads.num_threads();
   const CpuTarget target = FindCpuTarget(options_.hpm.cpu_target);
   std::vector<std::unique_ptr<Backend>> cpus;
   cpus.push_back(MakeCpuBackend(target, num_threads));

@@ -5,6 +5,7 @@
 #include <deque>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 
 namespace hpm {
@@ -83,15 +84,19 @@ std::vector<int> RunWorkQueue(const std::vector<int>& items,
                               const WorkQueueRules& rules) {
   WorkQueue queue(items, rules);
   std::vector<char> stays(workers->size(), 1);
-  if (workers->size() == 1) {
-    stays[0] = queue.Serve(workers->front());
-  } else {
-    std::vector<std::thread> threads;
-    for (size_t i = 0; i < workers->size(); ++i) {
-      threads.emplace_back([&, i] { stays[i] = queue.Serve((*workers)[i]); });
+  std::vector<std::thread> threads;
+  const auto serve = [&](size_t i) { stays[i] = queue.Serve((*workers)[i]); };
+  for (size_t i = 1; i < workers->size(); ++i) {
+    try {
+      threads.emplace_back(serve, i);
+    } catch (const std::system_error&) {
+      break;  // The system grants no more; those there are do the work.
     }
-    for (std::thread& thread : threads) thread.join();
   }
+  if (!workers->empty()) serve(0);
+  for (std::thread& thread : threads) thread.join();
+  // Whoever had no thread takes over if the others gave up.
+  for (size_t i = 1 + threads.size(); i < workers->size(); ++i) serve(i);
   std::vector<int> remaining;
   for (size_t i = 0; i < workers->size(); ++i) {
     if (stays[i]) remaining.push_back((*workers)[i]);

@@ -9,8 +9,9 @@
 namespace hpm {
 
 struct WorkQueueRules {
-  // Computes an item; called in the worker's own thread (in the caller's, if
-  // there is only one worker).
+  // Computes an item; the first worker in the caller's thread, each other in
+  // one of its own. Workers for whom no thread can be started wait until
+  // those with threads are done.
   std::function<void(int worker, int item)> work;
   // Asked when work() throws Error: whether this worker gives up for good. Its
   // item then goes to another worker. Calls do not overlap.

@@ -55,6 +55,13 @@ int RunAndReport(const ControllerOptions& options,
 
 }  // namespace
 
+int Print(const std::string& text, const ToolEnvironment& tool) {
+  if (*tool.out << text << std::flush) return 0;
+  *tool.err << "ERROR: standard output cannot be written; check where it goes\n"
+            << std::flush;
+  return ExitCode(ErrorCode::kFailure);
+}
+
 int RunPatchMatchStereo(const std::vector<std::string>& arguments,
                         const ToolEnvironment& tool) {
   ProgressLine progress(
@@ -67,8 +74,7 @@ int RunPatchMatchStereo(const std::vector<std::string>& arguments,
   try {
     const ParsedOptions parsed = ParseOptions(arguments);
     if (parsed.help) {
-      *tool.out << HelpText() << std::flush;
-      return 0;
+      return Print(HelpText(), tool);
     }
     for (const std::string& problem : parsed.problems)
       progress.Log(LogLevel::kError, problem);

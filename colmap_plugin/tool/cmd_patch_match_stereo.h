@@ -29,6 +29,10 @@ struct ToolEnvironment {
       run_stereo;
 };
 
+// The answer to a question, such as the help. Returns the exit code: lost text
+// is an error.
+int Print(const std::string& text, const ToolEnvironment& tool);
+
 // `arguments` without the program's name and the command word. Returns the exit
 // code (0 or an ErrorCode); throws nothing.
 int RunPatchMatchStereo(const std::vector<std::string>& arguments,

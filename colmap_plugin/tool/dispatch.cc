@@ -23,18 +23,15 @@ std::string HelpAs(const std::string& form) {
 int RunTool(std::vector<std::string> arguments, const ToolEnvironment& tool) {
   const std::string word = arguments.empty() ? "help" : arguments[0];
   if (word == "version" || word == "--version") {
-    *tool.out << VersionLine() << '\n' << std::flush;
-    return 0;
+    return Print(VersionLine() + "\n", tool);
   }
   if (word == "help") {
-    *tool.out << HelpAs(arguments.size() == 2 ? arguments[1] : "")
-              << std::flush;
-    return 0;
+    return Print(HelpAs(arguments.size() == 2 ? arguments[1] : ""), tool);
   }
   if (word == "patch_match_stereo") {
     arguments.erase(arguments.begin());
   } else if (word.empty() || word[0] != '-') {
-    *tool.err << "ERROR: unknown command '" << OneLine(word)
+    *tool.err << "ERROR: unknown command '" << OneLine(Shortened(word))
               << "'; commands: patch_match_stereo, help, version\n"
               << std::flush;
     return static_cast<int>(ErrorCode::kUsage);

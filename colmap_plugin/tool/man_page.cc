@@ -61,8 +61,8 @@ The device cannot be used.
 .B 7
 Another run works on this workspace.
 .TP
-.B 130, 143
-Interrupted by SIGINT, SIGTERM.
+.B 130, 143, 129
+Interrupted by SIGINT, SIGTERM, SIGHUP.
 .SH EXAMPLE
 .nf
 colmap image_undistorter \-\-image_path images \-\-input_path sparse/0 \-\-output_path dense

@@ -13,6 +13,12 @@ constexpr OptionGroup kCommon = OptionGroup::kCommon;
 constexpr OptionGroup kColmap = OptionGroup::kColmap;
 constexpr OptionGroup kExpert = OptionGroup::kExpert;
 
+// Far beyond what is of use, and far below what overflows or fills the memory.
+constexpr int kMaxThreads = 1024;
+constexpr int kMaxGpuImages = 64;
+constexpr int kMaxIterations = 10000;
+constexpr int kMaxPasses = 100;
+
 // One row; `select` maps ToolOptions* to a pointer to the member.
 template <class Select>
 OptionSpec Row(OptionGroup group,
@@ -116,7 +122,7 @@ std::vector<OptionSpec> MakeTable() {
           "Compute maps again that are complete and made with the same options"),
       Hpm(kCommon, "previews", &H::previews, Anything(),
           "Write colour pictures of the maps to stereo/previews"),
-      Stereo(kCommon, "num_threads", &P::num_threads, AtLeast(-1),
+      Stereo(kCommon, "num_threads", &P::num_threads, Between(-1, kMaxThreads),
              "Threads to use; -1 or 0: all cores"),
       Hpm(kCommon, "device", &H::device, OneOf({"auto", "cpu", "cuda"}),
           "auto: GPUs that pass a self-test, else the CPU; cuda: GPUs or an error"),
@@ -170,19 +176,19 @@ std::vector<OptionSpec> MakeTable() {
              "Also write stereo/consistency_graphs"),
 
       // Fine tuning, and what has no meaning in this method.
-      Hpm(kExpert, "gpu_images", &H::gpu_images, AtLeast(-1),
+      Hpm(kExpert, "gpu_images", &H::gpu_images, Between(-1, kMaxGpuImages),
           "Images in flight per entry of gpu_index; -1 or 0: three, or fewer if memory is short"),
       Hpm(kExpert, "cpu_target", &H::cpu_target, Anything(),
           "SIMD instructions to use: auto, scalar, or a target of this machine"),
-      Hpm(kExpert, "num_iterations", &H::num_iterations, AtLeast(-1),
+      Hpm(kExpert, "num_iterations", &H::num_iterations, Between(-1, kMaxIterations),
           "Red/black iterations of a photometric or prior pass; -1 or 0: the method's own"),
-      Hpm(kExpert, "num_geom_iterations", &H::num_geom_iterations, AtLeast(-1),
+      Hpm(kExpert, "num_geom_iterations", &H::num_geom_iterations, Between(-1, kMaxIterations),
           "Red/black iterations of a geometric pass; -1 or 0: the method's own"),
-      Hpm(kExpert, "num_geom_passes", &H::num_geom_passes, AtLeast(-1),
+      Hpm(kExpert, "num_geom_passes", &H::num_geom_passes, Between(-1, kMaxPasses),
           "Geometric passes; -1 or 0: the method's own"),
-      Hpm(kExpert, "num_fine_iterations", &H::num_fine_iterations, AtLeast(-1),
+      Hpm(kExpert, "num_fine_iterations", &H::num_fine_iterations, Between(-1, kMaxIterations),
           "Hpm.num_iterations of hpm_plus at levels finer than the coarsest; -1: its own"),
-      Hpm(kExpert, "num_fine_geom_passes", &H::num_fine_geom_passes, AtLeast(-1),
+      Hpm(kExpert, "num_fine_geom_passes", &H::num_fine_geom_passes, Between(-1, kMaxPasses),
           "Hpm.num_geom_passes of hpm_plus at levels finer than the coarsest; -1 or 0: its own"),
       Hpm(kExpert, "max_views", &H::max_views, Between(-1, kMaxViews),
           "Source images that judge a pixel at a time, chosen anew in every iteration; -1 or 0: the method's own"),

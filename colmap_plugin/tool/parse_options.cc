@@ -1,10 +1,13 @@
 #include "colmap_plugin/tool/parse_options.h"
 
+#include "colmap_plugin/formats/input_file.h"
 #include "colmap_plugin/tool/quality.h"
+#include "colmap_plugin/tool/text.h"
+#include "src/base/error.h"
 
-#include <filesystem>
-#include <fstream>
+#include <cstdint>
 #include <map>
+#include <sstream>
 
 #include <boost/program_options.hpp>
 #include <fmt/format.h>
@@ -13,6 +16,10 @@ namespace hpm {
 namespace {
 
 namespace po = boost::program_options;
+
+// No path may be longer, and nothing else has reason to.
+constexpr size_t kMaxValueLength = 4095;
+constexpr uint64_t kMaxProjectFileBytes = 1 << 20;
 
 // Boost only splits the text; types and ranges are ours, since Boost converts
 // numbers by the global locale.
@@ -56,8 +63,10 @@ class Interpreter {
         const std::string name = option.original_tokens.empty()
                                      ? option.string_key
                                      : option.original_tokens[0];
-        Problem(fmt::format(
-            "{}unknown option '{}'{}", source, name, Suggestion(name)));
+        Problem(fmt::format("{}unknown option '{}'{}",
+                            source,
+                            Shortened(name),
+                            Suggestion(name)));
       } else if (!option.string_key.empty() && option.value.size() == 1) {
         TakeValue(option.string_key, option.value[0]);
       }
@@ -76,8 +85,8 @@ class Interpreter {
           fmt::format("--random_seed '{}' and --default_random_seed '{}' "
                       "contradict each other;"
                       " allowed: one of the two, or the same number",
-                      given_["random_seed"],
-                      given_["default_random_seed"]));
+                      Shortened(given_["random_seed"]),
+                      Shortened(given_["default_random_seed"])));
     }
     const double depth_min = options.patch_match.depth_min;
     const double depth_max = options.patch_match.depth_max;
@@ -117,6 +126,13 @@ class Interpreter {
       Problem(fmt::format("--{} is given twice; allowed: once", name));
       return;
     }
+    if (text.size() > kMaxValueLength) {
+      Problem(fmt::format("--{} '{}' is too long; allowed: {} characters",
+                          name,
+                          Shortened(text),
+                          kMaxValueLength));
+      return;
+    }
     // Parsed into a copy: a refused value must not take part in the rules of
     // Finish().
     ToolOptions trial = result_->options;
@@ -127,7 +143,7 @@ class Interpreter {
     }
     Problem(fmt::format("--{} '{}' is not allowed; allowed: {}",
                         name,
-                        text,
+                        Shortened(text),
                         AllowedText(*option)));
   }
 
@@ -156,22 +172,28 @@ class Interpreter {
 ParsedOptions ParseProjectFile(const std::string& path) {
   ParsedOptions result;
   Interpreter interpreter(&result);
-  std::error_code ignored;
-  std::ifstream file(path);
-  if (std::filesystem::is_directory(path, ignored) || !file) {
-    interpreter.Problem(
-        fmt::format("{}: configuration file does not exist or cannot be read; "
-                    "check --project_path",
-                    path));
-    return result;
-  }
   try {
+    const InputFile input(path);
+    if (input.size() > kMaxProjectFileBytes) {
+      interpreter.Problem(
+          fmt::format("{}: has {} bytes, a project file has at most {}; check "
+                      "--project_path",
+                      path,
+                      input.size(),
+                      kMaxProjectFileBytes));
+      return result;
+    }
+    std::string text(input.size(), '\0');
+    text.resize(input.ReadAt(0, text.data(), text.size()));
+    std::istringstream file(text);
     interpreter.Take(
         po::parse_config_file(file, Describe(), /*allow_unregistered=*/true),
         path + ": ");
     interpreter.Finish();
+  } catch (const Error& error) {
+    interpreter.Problem(fmt::format("{}; check --project_path", error.what()));
   } catch (const po::error& error) {
-    interpreter.Problem(fmt::format("{}: {}", path, error.what()));
+    interpreter.Problem(fmt::format("{}: {}", path, Shortened(error.what())));
   }
   return result;
 }
@@ -210,7 +232,7 @@ ParsedOptions ParseOptions(const std::vector<std::string>& arguments) {
     }
     interpreter.Finish();
   } catch (const po::error& error) {
-    interpreter.Problem(error.what());
+    interpreter.Problem(Shortened(error.what()));
   }
   return result;
 }

@@ -3,10 +3,10 @@
 #include "colmap_plugin/controller/controller.h"
 #include "colmap_plugin/tool/dispatch.h"
 #include "colmap_plugin/tool/signals.h"
+#include "colmap_plugin/tool/standard_streams.h"
 #include "src/base/error.h"
 
 #include <chrono>
-#include <csignal>
 #include <cstdlib>
 #include <iostream>
 #include <string>
@@ -49,6 +49,7 @@ RunSummary RunStereo(const ControllerOptions& options,
 }  // namespace
 
 int RunProcess(const std::vector<std::string>& arguments) {
+  OpenStandardStreams();
   // What OpenCV would print about a file is said by our own messages.
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
   const CancelToken& cancel = InstallSignalHandlers();
@@ -62,7 +63,7 @@ int RunProcess(const std::vector<std::string>& arguments) {
   const int exit_code = RunTool(arguments, tool);
   const bool interrupted =
       exit_code == static_cast<int>(ErrorCode::kInterrupted);
-  return interrupted && CaughtSignal() == SIGTERM ? 128 + SIGTERM : exit_code;
+  return interrupted && CaughtSignal() != 0 ? 128 + CaughtSignal() : exit_code;
 }
 
 }  // namespace hpm

@@ -6,8 +6,8 @@
 
 namespace hpm {
 
-// `arguments` without the program's name. Takes over SIGINT and SIGTERM.
-// Returns the exit code of the process.
+// `arguments` without the program's name. Takes over SIGINT, SIGTERM and
+// SIGHUP. Returns the exit code of the process.
 int RunProcess(const std::vector<std::string>& arguments);
 
 }  // namespace hpm

@@ -18,6 +18,14 @@ std::string OneLine(std::string_view text) {
   return line;
 }
 
+std::string Shortened(const std::string& text) {
+  constexpr size_t kMost = 200;
+  constexpr size_t kShown = 60;
+  if (text.size() <= kMost) return text;
+  return fmt::format(
+      "{}... ({} characters)", text.substr(0, kShown), text.size());
+}
+
 std::string FormatDuration(double seconds) {
   // A month is as good as "for ever" and keeps the conversion defined.
   const auto whole = static_cast<int64_t>(

@@ -11,6 +11,9 @@ namespace hpm {
 // blanks.
 std::string OneLine(std::string_view text);
 
+// The beginning of what a user gave, and its length, if it is long.
+std::string Shortened(const std::string& text);
+
 // "45 s", "3 min 20 s", "1 h 02 min".
 std::string FormatDuration(double seconds);
 

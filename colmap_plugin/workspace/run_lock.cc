@@ -3,6 +3,7 @@
 #include "colmap_plugin/formats/image_name.h"
 #include "colmap_plugin/workspace/lock_owner.h"
 #include "src/base/error.h"
+#include "src/base/threads.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -155,6 +156,9 @@ RunLock::RunLock(const fs::path& state_path,
       if (!now || now->contents != contents_) ThrowOthersAreStarting(path_);
     }
     heart_ = std::thread([this] { KeepAlive(); });
+  } catch (const std::system_error&) {
+    Release();
+    throw NoThreadError();
   } catch (...) {
     Release();
     throw;

@@ -17,7 +17,7 @@ enum class ErrorCode {
   kOutOfResources = 5,  // memory or disk
   kDevice = 6,          // the asked-for device cannot be used
   kLocked = 7,          // another run works on this workspace
-  kInterrupted = 130,   // SIGINT (SIGTERM exits with 143)
+  kInterrupted = 130,   // SIGINT (SIGTERM exits with 143, SIGHUP 129)
 };
 
 class Error : public std::runtime_error {

@@ -33,6 +33,29 @@ class Signals(CliTest):
     def test_sigterm_stops_within_two_seconds_with_143(self):
         self.assert_stops(signal.SIGTERM, 143)
 
+    def test_sighup_stops_within_two_seconds_with_129(self):
+        self.assert_stops(signal.SIGHUP, 129)
+
+
+class StandardStreams(CliTest):
+    def test_closed_ones_are_not_given_to_files(self):
+        workspace = self.workspace()
+
+        def close():
+            for stream in (0, 1, 2):
+                os.close(stream)
+
+        process = subprocess.Popen(self.command(workspace, *SLOW), preexec_fn=close)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)
+        deadline = time.monotonic() + 60
+        while not (workspace / "stereo/hpm_mvs/lock").exists():
+            self.assertIsNone(process.poll())
+            self.assertLess(time.monotonic(), deadline)
+            time.sleep(0.02)
+        for stream in (0, 1, 2):
+            self.assertEqual(os.readlink(f"/proc/{process.pid}/fd/{stream}"), "/dev/null")
+
 
 class Locking(CliTest):
     def test_a_second_run_is_refused_until_the_first_is_gone(self):

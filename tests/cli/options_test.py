@@ -24,6 +24,15 @@ class Help(CliTest):
             self.assertEqual((result.returncode, result.stderr), (0, ""))
             self.assertIn("--PatchMatchStereo.max_image_size", result.stdout)
 
+    def test_help_that_cannot_be_written_is_not_exit_0(self):
+        for arguments in (["help"], ["version"], ["patch_match_stereo", "--help"]):
+            with open("/dev/full", "wb") as full:
+                result = subprocess.run(
+                    [HPM_MVS, *arguments], stdout=full, stderr=subprocess.PIPE, timeout=60
+                )
+            self.assertEqual(result.returncode, 1)
+            self.assertIn(b"standard output", result.stderr)
+
     def test_help_wins_over_other_options(self):
         self.assertEqual(run("patch_match_stereo", "--workspace_path", "x", "--help").returncode, 0)
 
@@ -56,11 +65,37 @@ class WrongOptions(CliTest):
             ["--Hpm.method=magic"],
             ["--Hpm.cpu_target=abacus"],
             ["--Hpm.num_iterations=-2"],
+            ["--Hpm.num_iterations=2147483647"],
+            ["--Hpm.num_geom_passes=2147483647"],
+            ["--PatchMatchStereo.num_threads=2147483647"],
             ["--workspace_format=OTHER"],
             ["--unknown=1"],
         ):
             with self.subTest(options):
                 self.assert_usage_error(workspace, *options)
+
+    def test_long_values_are_refused_and_echoed_in_short(self):
+        long = 100_000 * "a"
+        for option in (
+            f"--workspace_path={long}",
+            f"--PatchMatchStereo.num_threads={long}",
+            f"--Hpm.method={long}",
+            f"--{long}=1",
+        ):
+            result = run("patch_match_stereo", option)
+            self.assert_exit(result, 2, option[:12], "aaa... (100")
+            self.assertLess(len(result.stderr), 1000)
+        self.assertLess(len(run(long).stderr), 1000)
+
+    def test_a_project_file_without_end_or_writer_is_exit_2(self):
+        fifo = self.workspace() / "fifo"
+        os.mkfifo(fifo)
+        for path in (fifo, "/dev/zero"):
+            result = run("patch_match_stereo", f"--project_path={path}")
+            self.assert_exit(result, 2, path, "not a regular file")
+        large = fifo.with_name("large.ini")
+        large.write_bytes(bytes((1 << 20) + 1))
+        self.assert_exit(run("patch_match_stereo", f"--project_path={large}"), 2, large, "1048576")
 
     def test_a_missing_workspace_option_is_exit_2(self):
         result = run("patch_match_stereo")

@@ -279,7 +279,7 @@ TEST(ParseOptionsTest, ProblemsOfAProjectFileNameTheFile) {
   const std::string missing = testing::TempDir() + "no_such.ini";
   EXPECT_THAT(
       ParseOptions({"--project_path", missing}).problems,
-      ElementsAre(AllOf(HasSubstr(missing), HasSubstr("does not exist"))));
+      ElementsAre(AllOf(HasSubstr(missing), HasSubstr("No such file"))));
   EXPECT_THAT(ParseOptions({"--project_path", testing::TempDir()}).problems,
               SizeIs(1));
 }

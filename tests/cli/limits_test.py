@@ -1,0 +1,80 @@
+"""Limits of the system on threads and address space."""
+import os
+import resource
+import subprocess
+import unittest
+
+from support import FAST, HPM_MVS, CliTest, map_files
+
+FAST_ALONE = [option for option in FAST if "num_threads" not in option]
+# A user id that has no other process, since the limit counts all of a user's.
+LONELY_USER = 54321
+
+
+class Threads(CliTest):
+    def run_with(self, workspace, num_threads, limit, value, user=None):
+        def prepare():
+            resource.setrlimit(limit, (value, value))
+            if user is not None:
+                os.setgid(user)
+                os.setuid(user)
+
+        return self.run_tool(
+            workspace, *FAST_ALONE, f"--PatchMatchStereo.num_threads={num_threads}", preexec_fn=prepare
+        )
+
+    @unittest.skipUnless(os.geteuid() == 0, "becoming a user without processes needs root")
+    def test_with_few_processes_fewer_threads_compute_or_the_limit_is_named(self):
+        expected = self.workspace()
+        self.assert_exit(self.run_tool(expected, *FAST), 0)
+        for processes in (1, 2, 5, 8):
+            with self.subTest(processes):
+                workspace = self.workspace()
+                for path in [workspace, *workspace.rglob("*")]:
+                    os.chown(path, LONELY_USER, LONELY_USER)
+                try:
+                    result = self.run_with(
+                        workspace, 16, resource.RLIMIT_NPROC, processes, LONELY_USER
+                    )
+                except PermissionError:
+                    self.skipTest("an unprivileged user cannot run the program here")
+                if processes == 1:
+                    self.assert_exit(result, 5, "ulimit -u", "--PatchMatchStereo.num_threads")
+                    self.assertEqual(map_files(workspace), {})
+                    continue
+                self.assert_exit(result, 0)
+                self.assertIn(f"{processes - 1} compute in place of 16", result.stderr)
+                self.assert_same_maps(map_files(workspace), map_files(expected))
+
+    def test_without_address_space_for_all_threads_nothing_is_aborted(self):
+        def starts(megabytes):
+            return subprocess.run(
+                [HPM_MVS, "version"],
+                stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE,
+                preexec_fn=lambda: resource.setrlimit(
+                    resource.RLIMIT_AS, (megabytes << 20, megabytes << 20)
+                ),
+            ).returncode == 0
+
+        least = 64
+        while not starts(least):
+            least += 16
+            self.assertLess(least, 4096)
+        codes = []
+        for more in (8, 40, 96):
+            workspace = self.workspace()
+            result = self.run_with(workspace, 40, resource.RLIMIT_AS, (least + more) << 20)
+            self.assertIn(result.returncode, (0, 5), result.stderr)
+            codes.append(result.returncode)
+            if result.returncode == 5:
+                self.assert_exit(result, 5, "ulimit -v")
+            else:
+                self.assertIn("compute in place of 40", result.stderr)
+                self.assert_complete(workspace)
+            self.assert_no_partial_files(workspace)
+        self.assertIn(0, codes)
+
+
+if __name__ == "__main__":
+    unittest.main()
