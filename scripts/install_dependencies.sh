@@ -21,9 +21,9 @@ PACKAGES=(
   libtbb-dev
   libfmt-dev
   nlohmann-json3-dev
-  # tests, format, lint
+  # tests (clang is the second compiler), format, lint
   libgtest-dev libgmock-dev libbenchmark-dev
-  clang-format clang-tidy
+  clang clang-format clang-tidy
   python3 python3-venv
   # the program whose step we replace; it also runs in the tests
   colmap

@@ -21,8 +21,8 @@
 namespace hpm {
 namespace {
 
-// Hypotheses may leave the range that is searched by this much (specification
-// 2.4).
+// Hypotheses may leave the range that is searched by this much, as in the
+// paper's authors' code.
 constexpr float kDepthMinSlack = 0.6f;
 constexpr float kDepthMaxSlack = 1.2f;
 

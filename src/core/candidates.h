@@ -1,6 +1,6 @@
 // Candidate hypotheses of a visit: in each region the pixel of smallest stored
-// cost; regions whose candidate convinces no view grow (NESP, paper
-// section 3.1; specification sections 5.2 and 5.3).
+// cost; regions whose candidate convinces no view grow (NESP, paper,
+// section 3.2).
 #pragma once
 
 #include "src/core/pixel_state.h"

@@ -17,7 +17,7 @@ struct SamplingPattern {
   int max_extensions;  // 0: regions never grow; each extension doubles the
                        // region
   int mask_distance;   // axial distance of the neighbours whose view masks vote
-                       // (section 4)
+                       // (view_selection.h)
 };
 
 }  // namespace hpm

@@ -1,6 +1,6 @@
-// COLMAP's filter of finished maps (contract 3.4): a source counts if it sees
-// the surface from its front, under a sufficient angle, with a sufficient NCC
-// and, after a geometric pass, with a small reprojection error.
+// COLMAP's filter of finished maps: a source counts if it sees the surface from
+// its front, under a sufficient angle, with a sufficient NCC and, after a
+// geometric pass, with a small reprojection error.
 #pragma once
 
 #include "src/core/visit.h"

@@ -1,5 +1,5 @@
 // Geometric consistency: forward-backward reprojection error of a hypothesis
-// against the depth map of a source view (specification section 9; after ACMM).
+// against the depth map of a source view (paper, section 3.4; after ACMM).
 #pragma once
 
 #include "src/core/warp.h"

@@ -1,4 +1,5 @@
-// Start of a run at one pixel (specification section 2.6).
+// Start of a run at one pixel (paper, section 3.2, random initialisation; later
+// runs start from what is stored or from a prior).
 #pragma once
 
 #include "src/core/pixel_state.h"

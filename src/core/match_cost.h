@@ -1,7 +1,6 @@
 // Matching cost: 1 - bilaterally weighted NCC of a plane hypothesis between the
-// reference patch and its warp in one source view (specification section 3; the
-// paper takes it from ACMH). This is the readable scalar form; backends bring
-// their own and are tested against it.
+// reference patch and its warp in one source view, as ACMH has it. This is the
+// readable scalar form; backends bring their own and are tested against it.
 #pragma once
 
 #include "src/core/limits.h"

@@ -1,5 +1,5 @@
-// Clean-up after a run: median of depths in a star of the other colour
-// (specification section 10.1). The normal stays, the plane moves along.
+// Clean-up after a run, from ACMH's code: median of depths in a star of the
+// other colour. The normal stays, the plane moves along.
 #pragma once
 
 #include "src/core/pixel_state.h"

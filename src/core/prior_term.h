@@ -1,4 +1,4 @@
-// Planar prior in the decision (ACMP's probabilistic form; specification 7.6):
+// Planar prior in the decision (paper, section 3.3; ACMP's probabilistic form):
 // posterior = exp(-cost^2 / beta) * (gamma + depth likeness * normal likeness).
 #pragma once
 

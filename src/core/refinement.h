@@ -1,5 +1,6 @@
-// New hypotheses around the current one (specification section 6; HPM-MVS takes
-// the seven combinations of current, perturbed and random depth and normal).
+// New hypotheses around the current one (paper, section 3.2, equation of the
+// seven hypotheses: combinations of current, perturbed and random depth and
+// normal).
 #pragma once
 
 #include "src/core/plane.h"
@@ -39,7 +40,7 @@ HPM_HD Vec3f PerturbNormal(const Vec3f& n,
 }
 
 // The hypotheses beside the current one, from another depth and normal: random
-// or perturbed ones in the specification.
+// or perturbed ones.
 HPM_HD void CombineHypotheses(const Camera& camera,
                               float col,
                               float row,

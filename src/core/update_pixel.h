@@ -1,5 +1,5 @@
 // One visit of one pixel: collect candidates, choose views, decide, refine
-// (specification appendix A).
+// (paper, section 3.2).
 #pragma once
 
 #include "src/core/candidates.h"

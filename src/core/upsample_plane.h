@@ -1,7 +1,7 @@
-// Joint bilateral upsampling of a prior at one pixel (HPM-MVS section 3.3;
-// specification section 8, with its corrections: planes are evaluated at the
-// pixel, so slanted surfaces stay exact; missing taps are skipped; the guide is
-// read where the tap lies).
+// Joint bilateral upsampling of a prior at one pixel (paper, section 3.4;
+// unlike its authors' code, planes are evaluated at the pixel, so slanted
+// surfaces stay exact; missing taps are skipped; the guide is read where the
+// tap lies).
 #pragma once
 
 #include "src/core/plane.h"

@@ -1,5 +1,5 @@
-// Joint view selection of ACMH (Xu and Tao 2019, section 3.2; specification
-// section 4): the costs of all candidates vote for the views worth trusting.
+// Joint view selection of ACMH (Xu and Tao 2019), which the paper takes over
+// (section 3.2): the costs of all candidates vote for the views worth trusting.
 #pragma once
 
 #include "src/core/host_device.h"

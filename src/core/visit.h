@@ -47,7 +47,7 @@ struct VisitParams {
   bool few_views;
 };
 
-// k of the best-k mean at initialisation (paper section 3).
+// k of the best-k mean at initialisation (paper, sections 3.2 and 4.1).
 constexpr int kNumInitialViews = 4;
 
 // Mean over the drawn views, weighted; costs[k] belongs to weights.view[k], or

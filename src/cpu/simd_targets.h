@@ -6,6 +6,11 @@
 // matching cost's are; ARM's servers take NEON.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
 
+// Highway's fallback is one lane, with every compiler, and unused: the readable
+// scalar code stands in. Its other one, emulated vectors, is for some compilers
+// only, and its vectors are no registers of the processor.
+#define HWY_BROKEN_EMU128 1
+
 #include <cstddef>
 #include <cstdint>
 

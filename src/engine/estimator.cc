@@ -30,7 +30,7 @@ const char* PhaseName(PassKind kind) {
 // Merges what a level found itself with what came up from the coarser one,
 // pixel by pixel. A coarse level knows plain surfaces, a fine one detail: where
 // the fine level searched, it must match clearly worse to lose; elsewhere,
-// clearly better to win (ACMM's detail restoration, specification 12.3).
+// clearly better to win (as in ACMM's detail restoration).
 void MergeLevels(const HypothesisMap& carried,
                  const std::vector<bool>& searched,
                  HypothesisMap* map) {

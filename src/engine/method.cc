@@ -8,7 +8,7 @@ namespace {
 constexpr int kNever = 1 << 30;
 
 // A row of the paper: three iterations everywhere, two geometric passes, levels
-// down to 1000 pixels (specification 1.2, appendix B).
+// down to 1000 pixels, as in the authors' code; the paper gives no counts.
 Method Paper(const char* name,
              const char* summary,
              bool non_local,

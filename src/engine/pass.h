@@ -7,7 +7,7 @@
 namespace hpm {
 
 // Numbers of the algorithm that users may set; the defaults are those of the
-// paper and its code (specification appendix B).
+// paper (section 4.1) or, where it gives none, of its authors' code.
 struct MethodParams {
   int patch_radius = 5;     // pixels
   float sigma_spatial = 5;  // pixels

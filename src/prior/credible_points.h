@@ -1,5 +1,5 @@
 // Credible points: pixels whose matching cost is small enough to span a prior
-// (HPM-MVS section 3.2; specification 7.2).
+// (paper, section 3.3, equation of I_cred; the cells are its authors' code's).
 #pragma once
 
 #include "src/prior/level.h"

@@ -1,5 +1,5 @@
-// Hypotheses at a reduced scale, for building priors (HPM-MVS section 3.3;
-// specification 7.1). Level l halves the image l times.
+// Hypotheses at a reduced scale, for building priors (paper, section 3.4).
+// Level l halves the image l times.
 #pragma once
 
 #include "src/image/hypothesis_map.h"

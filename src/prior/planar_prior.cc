@@ -78,8 +78,8 @@ void FillTriangle(const Camera& camera,
   }
 }
 
-// The first triple of the nearest points that is not collinear, nearest first
-// in the order of the specification (7.4).
+// The first triple of the nearest points that is not collinear: all triples of
+// the five nearest before any with the sixth, as in the paper's authors' code.
 Plane NearestPlane(const std::vector<CrediblePoint>& points,
                    const int* nearest) {
   constexpr int kTriples[20][3] = {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}, {0, 2, 3},

@@ -1,5 +1,5 @@
 // Planar prior of a level: a plane for every pixel, spanned by credible points
-// (HPM-MVS section 3.2; specification 7.3 and 7.4).
+// (paper, section 3.3).
 #pragma once
 
 #include "src/prior/credible_points.h"

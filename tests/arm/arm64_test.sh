@@ -42,31 +42,10 @@ passed=$(grep -c '^ *[0-9]*/.* Passed ' "$folder/ctest.log") || true
 echo "passed on ARM: $passed of ${#tests[@]} test programs"
 ((passed == ${#tests[@]}))
 
-emulate() { qemu-aarch64 -L build/arm64-sysroot "$@"; }
-
 # Without this line only the scalar target would have been shown to work.
 grep -E '\[ +OK \] CpuTargets/EveryTarget\..*/neon' "$folder/ctest.log" | sed 's/^[0-9]*: //' ||
   { echo "error: the NEON target has not run" >&2; exit 1; }
-emulate "$build/tests/engine/accuracy_test" --gtest_filter='*SmallScene*/neon' | tee "$folder/accuracy.log"
+qemu-aarch64 -L build/arm64-sysroot "$build/tests/engine/accuracy_test" --gtest_filter='*SmallScene*/neon' | tee "$folder/accuracy.log"
 grep -q '\[ *OK \] .*IsAccurate/neon' "$folder/accuracy.log"
 
-# Three images of the demo scene, matched among themselves, very small.
-workspace() { # NAME
-  rm -rf "${folder:?}/$1"
-  mkdir -p "$folder/$1/stereo"
-  cp -r data/workshop/images data/workshop/sparse "$folder/$1"
-  printf '%s\n' 0000.jpg '0001.jpg, 0002.jpg' 0001.jpg '0000.jpg, 0002.jpg' \
-    0002.jpg '0000.jpg, 0001.jpg' >"$folder/$1/stereo/patch-match.cfg"
-}
-arguments=(patch_match_stereo --Hpm.device cpu --Hpm.cpu_target scalar --PatchMatchStereo.max_image_size 64)
-workspace native
-workspace arm
-"$native" "${arguments[@]}" --workspace_path "$folder/native" >"$folder/native.log"
-emulate "$build/colmap_plugin/tool/hpm_mvs" "${arguments[@]}" --workspace_path "$folder/arm" >"$folder/arm.log"
-maps=0
-for map in "$folder"/native/stereo/{depth,normal}_maps/*.bin; do
-  cmp "$map" "${map/#$folder\/native/$folder/arm}"
-  maps=$((maps + 1))
-done
-echo "same bytes on ARM and here: $maps maps"
-((maps == 12))
+tests/same_maps.sh "$folder" "$native" qemu-aarch64 -L build/arm64-sysroot "$build/colmap_plugin/tool/hpm_mvs"

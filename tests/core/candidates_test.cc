@@ -19,7 +19,7 @@ bool Extends(const std::vector<float>& costs, int iteration, int extension) {
                     ConvincingCost(iteration, extension));
 }
 
-// Specification 5.3: tau = 0.8 exp(-iteration^2 (3 - extension) / 90).
+// Paper, section 3.2: tau = 0.8 exp(-iteration^2 (3 - extension) / 90).
 TEST(MustExtend, ThresholdTightensWithIterationsAndLoosensWithExtensions) {
   const float expected[3][3] = {{0.8f, 0.8f, 0.8f},
                                 {0.7738f, 0.7824f, 0.7912f},
@@ -186,8 +186,7 @@ class CollectCandidatesTest : public testing::Test {
   const FakeCost doubtful_ = {[](const Plane&, int) { return 1.0f; }};
 };
 
-// Also to the right, where the public code takes the worst (specification 13,
-// number 3).
+// Also to the right, where the public code takes the worst.
 TEST_F(CollectCandidatesTest, TakesTheSmallestStoredCostOfEachRegion) {
   const int best[8][2] = {
       {0, -9}, {0, 11}, {-7, 0}, {13, 0}, {-9, -8}, {8, -9}, {13, 12}, {-6, 5}};
@@ -274,7 +273,7 @@ TEST_F(CollectCandidatesTest, ConvincingRegionsDoNotGrow) {
   EXPECT_EQ(convincing_.num_evaluations, 8 * 2);
 }
 
-// All eight regions, not only the first (specification 13, number 1).
+// All eight regions; in the public code only the first can.
 TEST_F(CollectCandidatesTest, EveryDoubtfulRegionGrowsThreeTimes) {
   const int furthest[8][2] = {{0, -83},
                               {0, 83},

@@ -61,7 +61,7 @@ Field Noisy(uint32_t seed) {
   return field;
 }
 
-// Specification 10.1: axial neighbours at 1, 3, 5 and the knight's moves.
+// The star: axial neighbours at 1, 3, 5 and the knight's moves.
 bool IsNeighbour(int dcol, int drow) {
   const int a = std::abs(dcol), b = std::abs(drow);
   if (a == 0 || b == 0) return a + b == 1 || a + b == 3 || a + b == 5;

@@ -12,7 +12,7 @@ const Vec3f kNormal = {0, 0, -1};
 
 Vec3f TurnedBy(float angle) { return {std::sin(angle), 0, -std::cos(angle)}; }
 
-// Specification 7.6, as a product.
+// ACMP's posterior as a product of all its factors.
 double Posterior(double cost, double dz, double angle) {
   return std::exp(-cost * cost / 0.18) *
          (0.5 + std::exp(-dz * dz / (2 * 0.01)) *

@@ -87,7 +87,7 @@ TEST(PerturbNormal, KeepsANormalThatWouldTurnAway) {
   EXPECT_LT(num_kept, 700);
 }
 
-// Specification 6.2: the paper's seven without the current one.
+// The paper's seven hypotheses (section 3.2) without the current one.
 TEST(CombineHypotheses, GivesTheSixCombinations) {
   const Camera camera = MakeTestCamera(100, 80, 90, 0.3, {0, 0, 0});
   const Vec3f n = Normalized({0.1f, 0, -1});

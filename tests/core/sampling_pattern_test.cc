@@ -103,8 +103,8 @@ TEST_P(EveryPattern, RegionsGrowOutwards) {
   }
 }
 
-// Specification 5.2, word by word.
-TEST(Nesp, BaseOffsetsAreThoseOfTheSpecification) {
+// The paper gives the counts and R = 4, its authors' code the offsets.
+TEST(Nesp, BaseOffsetsAreAPinwheelBeyondTheRadius) {
   const std::vector<std::vector<Offset>> expected = {
       {{0, -5}, {0, -7}, {0, -9}, {0, -11}, {0, -13}},
       {{0, 5}, {0, 7}, {0, 9}, {0, 11}, {0, 13}},

@@ -166,7 +166,7 @@ TEST_F(UpdatePixelTest, GeometricTermDecidesBetweenEqualCosts) {
   EXPECT_NEAR(Here().distance, kTrueDepth, 0.01);
 }
 
-// Where nothing can be seen nothing must break (specification 13, number 12).
+// Where nothing can be seen nothing must break: weights of no view are 0 / 0.
 TEST_F(UpdatePixelTest, PixelThatNoViewSeesStaysFinite) {
   const FakeCost blind = {[](const Plane&, int) { return kMaxCost; }};
   for (uint64_t key = 0; key < 20; ++key) {
@@ -198,8 +198,8 @@ TEST_F(UpdatePixelTest, ViewsThatDoNotSeeASurfaceDoNotSpeakAgainstIt) {
   EXPECT_EQ(taken[1], 20);
 }
 
-// Specification 13, number 5: the public code replaces a good plane at every
-// pixel with a prior by one of the refinements.
+// The public code replaces a good plane at every pixel with a prior by one of
+// the refinements.
 TEST_F(UpdatePixelTest, ConvergedPlaneOnItsPriorIsLeftAlone) {
   const Plane truth = {{0, 0, -1}, kTrueDepth};
   Here() = truth;

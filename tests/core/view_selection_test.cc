@@ -48,8 +48,7 @@ TEST(ViewLikelihood, CostsAtTheThresholdsAreNeitherGoodNorBad) {
                   kUndecided);
 }
 
-// The public code counts missing regions as perfect matches (specification 13,
-// number 4).
+// The public code counts missing regions as perfect matches.
 TEST(ViewLikelihood, MissingCandidatesDoNotVote) {
   EXPECT_FLOAT_EQ(Likelihood({0, 0, 0, 0, 0.1f, 0.1f, 0.1f, 0.9f}, 0xF0),
                   std::exp(-0.01f / 0.18f));

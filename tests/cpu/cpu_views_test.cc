@@ -33,7 +33,8 @@ double Bilinear(const GrayImage& image, double u, double v) {
          fv * ((1 - fu) * image.at(col, below) + fu * image.at(right, below));
 }
 
-// Specification 3, for a pixel whose window is seen completely.
+// ACMH's bilaterally weighted NCC in double, word by word, for a pixel whose
+// window is seen completely.
 double TextbookCost(
     const View& ref, const View& src, const Plane& plane, int col, int row) {
   const auto to_double = [](const Vec3f& v) {

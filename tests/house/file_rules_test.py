@@ -1,5 +1,5 @@
-"""Files stay below 500 lines, and the library never ends the process: only
-colmap_plugin/tool may."""
+"""Files stay below 500 lines, the library never ends the process (only
+colmap_plugin/tool may), and nobody cites what a reader does not have."""
 import pathlib
 import re
 import sys
@@ -16,6 +16,13 @@ MAY_END = "colmap_plugin/tool/"
 # Comments and literals, so that words in them do not count.
 NOT_CODE = re.compile(
     r"//[^\n]*|/\*.*?\*/|\"(?:\\.|[^\"\\\n])*\"|'(?:\\.|[^'\\\n])+'", re.DOTALL
+)
+# Papers and docs/ can be looked up; numbered specifications and contracts cannot.
+# A citation may be broken over lines of a comment.
+GAP = r"[\s/#*,:;(]+"
+CITES_UNKNOWN = re.compile(
+    rf"\b(?:specification|contract)s?{GAP}(?:(?:number|section|appendix)s?{GAP})?(?:\d|[A-E]\b)",
+    re.IGNORECASE,
 )
 ENDS_PROCESS = re.compile(r"\b(_?exit|_Exit|quick_exit|abort|terminate)\s*\(")
 
@@ -44,12 +51,25 @@ def process_ends(root):
     return found
 
 
+def unknown_citations(root):
+    found = []
+    for path, name in sources(root, FOLDERS):
+        found += [
+            f"{name}: {' '.join(cited.split())}"
+            for cited in CITES_UNKNOWN.findall(path.read_text(encoding="utf-8"))
+        ]
+    return found
+
+
 class FileRules(unittest.TestCase):
     def test_no_file_is_longer_than_500_lines(self):
         self.assertEqual(long_files(ROOT), [])
 
     def test_only_the_tool_ends_the_process(self):
         self.assertEqual(process_ends(ROOT), [])
+
+    def test_every_citation_can_be_looked_up(self):
+        self.assertEqual(unknown_citations(ROOT), [])
 
 
 class TheTestItself(unittest.TestCase):
@@ -77,6 +97,15 @@ class TheTestItself(unittest.TestCase):
     def test_words_in_comments_and_strings_do_not_count(self):
         self.write("src/engine/run.cc", '// exit(1)\n/* abort() */ Log("exit(1)"); loop_exit();\n')
         self.assertEqual(process_ends(self.root), [])
+
+    def test_finds_citations_of_unknown_documents(self):
+        for document in ("specification", "Contract"):
+            for place in ("7.1.", "section 10.1)", "number 13", "\n// appendix B", "\n//   3"):
+                with self.subTest(document + place):
+                    self.write("src/core/plane.h", f"// as in {document} {place}\n")
+                    self.assertEqual(len(unknown_citations(self.root)), 1)
+        self.write("src/core/plane.h", "// Paper, section 3.2. A contract that 3 sign.\n")
+        self.assertEqual(unknown_citations(self.root), [])
 
     def test_the_tool_may_exit(self):
         self.write("colmap_plugin/tool/main.cc", "_exit(130);\n")

@@ -51,7 +51,7 @@ TEST(MethodOptions, FilterAngleIsInRadians) {
       MakeFilterParams(options, 9).min_triangulation_angle, 1.5707963, 1e-6);
 }
 
-// Contract 3.2: COLMAP lowers the count for images with few sources.
+// As COLMAP does for images with few sources.
 TEST(MethodOptions, FilterAsksForNoMoreViewsThanThereAre) {
   PatchMatchStereoOptions options;
   options.filter_min_num_consistent = 4;

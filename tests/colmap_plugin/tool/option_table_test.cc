@@ -20,7 +20,7 @@ struct Expected {
       default_new;  // as COLMAP 4.x prints it; "-": not an option of 4.x
 };
 
-// The lists of `colmap patch_match_stereo --help`, contract of both versions.
+// The lists of `colmap patch_match_stereo --help`, of both versions.
 const std::vector<Expected>& ColmapOptions() {
   static const std::vector<Expected> options = {
       {"random_seed", "0", "-"},

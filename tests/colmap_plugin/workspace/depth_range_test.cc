@@ -57,7 +57,7 @@ TEST(DepthRange, GivenRangeHoldsForAllImagesEvenWithoutPoints) {
 TEST(DepthRange, AGivenRangeIsSearchedBeyondAsFarAsThePointsGo) {
   TestWorkspace files;
   files.AddImage("a.jpg", {0, 0, 0});
-  for (int i = 0; i < kEnoughPoints; ++i)
+  for (size_t i = 0; i < kEnoughPoints; ++i)
     files.AddPoint({0, 0, i % 2 == 0 ? 4.0 : 8.0}, {0});
   const Workspace workspace = files.Open();
   const DepthRanges inner(workspace, 4, 5);
