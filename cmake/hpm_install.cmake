@@ -16,6 +16,10 @@ install(FILES
   DESTINATION ${package_folder} COMPONENT development)
 install(DIRECTORY src colmap_plugin DESTINATION include/hpm_mvs COMPONENT development
   FILES_MATCHING PATTERN "*.h" PATTERN in_colmap EXCLUDE PATTERN wrapper EXCLUDE)
+# Of cuda/, the backend's interface with all that it includes; no more, for what lies
+# below it needs the CUDA toolkit.
+install(DIRECTORY cuda DESTINATION include/hpm_mvs COMPONENT development
+  FILES_MATCHING REGEX "/(cuda_backend|cuda_devices|device_problem|fast_math|memory_estimate|samplers)\\.h$")
 
 install(FILES README.md CHANGELOG.md docs/options.md
         DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)

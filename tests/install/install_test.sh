@@ -47,8 +47,9 @@ mkdir "$work/source"
 cp consumer.cc "$work/source"
 cp consumer.cmake "$work/source/CMakeLists.txt"
 cmake -S "$work/source" -B "$work/consumer" -G Ninja -DCMAKE_PREFIX_PATH="$prefix" \
+  -DHPM_INCLUDE="$prefix/include/hpm_mvs" \
   -DCMAKE_BUILD_TYPE=Debug >"$work/consumer.log" 2>&1 || { tail "$work/consumer.log"; fail "configuring the consumer"; }
-cmake --build "$work/consumer" >>"$work/consumer.log" 2>&1 || { tail -n 30 "$work/consumer.log"; fail "building the consumer"; }
+cmake --build "$work/consumer" >>"$work/consumer.log" 2>&1 || { grep -A 5 -E 'error|FAILED' "$work/consumer.log" | head -n 30; fail "building the consumer or the headers alone"; }
 "$work/consumer/consumer" || fail "running the consumer"
 
 echo "== the Debian package"
