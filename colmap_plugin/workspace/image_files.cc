@@ -107,6 +107,13 @@ bool SameProportions(const ImageSize& camera, const ImageSize& image) {
          least(image.height, camera.height) <= most(image.width, camera.width);
 }
 
+bool IsFarLarger(const ImageSize& camera, const ImageSize& image) {
+  // Models of thumbnails of the images are smaller by some few times.
+  constexpr double kMostTimes = 16;
+  return image.width > kMostTimes * camera.width ||
+         image.height > kMostTimes * camera.height;
+}
+
 std::string ImageFault::Line(int num_images, const std::string& what) const {
   return fmt::format(
       "{} of {} images {}, the first: {}", num_, num_images, what, first_);

@@ -32,6 +32,9 @@ std::string WhyMissing(const std::filesystem::path& folder,
 // rounded to whole pixels.
 bool SameProportions(const ImageSize& camera, const ImageSize& image);
 
+// Whether the image is so much larger that its header must be wrong.
+bool IsFarLarger(const ImageSize& camera, const ImageSize& image);
+
 // Counts images with one fault and keeps the first as the example.
 class ImageFault {
  public:

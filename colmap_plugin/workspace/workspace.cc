@@ -197,7 +197,8 @@ void Workspace::CheckNames() {
 }
 
 void Workspace::MakeCameras(const LogSink& log) {
-  ImageFault backslashes, missing, unreadable, other_size, other_proportions;
+  ImageFault backslashes, missing, unreadable, other_size, other_proportions,
+      far_larger;
   std::map<std::string, ImageFault> bad_cameras;  // by reason
   std::string why_not;
   for (int i = 0; i < num_images(); ++i) {
@@ -205,12 +206,20 @@ void Workspace::MakeCameras(const LogSink& log) {
     const SparseCamera& sparse_camera = model_.cameras.at(image.camera_id);
     const ImageFile file = FindImageFile(ImageFolder(), image.name);
     image_paths_.push_back(file.path);
+    const ImageSize camera_size = {static_cast<int>(sparse_camera.width),
+                                   static_cast<int>(sparse_camera.height)};
+    // A header that cannot be right must not make the run too large for all.
+    std::optional<ImageSize> size = file.size;
+    if (size && (!SameProportions(camera_size, *size) ||
+                 IsFarLarger(camera_size, *size))) {
+      size = std::nullopt;
+    }
     const std::optional<Camera> camera = MakeWorkingCamera(
-        sparse_camera, image, file.size, options_.max_image_size, &why_not);
+        sparse_camera, image, size, options_.max_image_size, &why_not);
     cameras_.push_back(camera.value_or(Camera{}));
     centers_.push_back(CenterOf(image));
     usable_.push_back(camera.has_value());
-    file_sizes_.push_back(file.size);
+    file_sizes_.push_back(size);
     has_picture_.push_back(file.exists);
     if (!camera) {
       bad_cameras[WithoutDigits(why_not)].Add(
@@ -228,8 +237,6 @@ void Workspace::MakeCameras(const LogSink& log) {
     }
     if (file.path != ImageFolder() / image.name)
       backslashes.Add(QuotedName(image.name));
-    const ImageSize camera_size = {static_cast<int>(sparse_camera.width),
-                                   static_cast<int>(sparse_camera.height)};
     if (!file.size) {
       unreadable.Add(file.path.string());
       has_picture_.back() = false;
@@ -245,12 +252,13 @@ void Workspace::MakeCameras(const LogSink& log) {
                                           file.size->height,
                                           camera_size.width,
                                           camera_size.height);
-    if (SameProportions(camera_size, *file.size)) {
+    if (size) {
       other_size.Add(sizes);
-    } else {
-      other_proportions.Add(sizes);
-      has_picture_.back() = false;
+      continue;
     }
+    has_picture_.back() = false;
+    (IsFarLarger(camera_size, *file.size) ? far_larger : other_proportions)
+        .Add(sizes);
   }
 
   const int num_usable =
@@ -277,8 +285,13 @@ void Workspace::MakeCameras(const LogSink& log) {
         "; they are not used: undo a rotation after the reconstruction (by "
         "software or by its EXIF entry), or undistort the images again");
   }
-  const int num_faults =
-      missing.num() + unreadable.num() + other_proportions.num();
+  if (far_larger.num() > 0) {
+    faults.push_back(
+        far_larger.Line(num_images(), "far larger than their camera") +
+        "; they are not used: undistort the images again");
+  }
+  const int num_faults = missing.num() + unreadable.num() +
+                         other_proportions.num() + far_larger.num();
   if (num_usable > 0 && num_faults == num_usable) {
     throw Error(ErrorCode::kBadInput,
                 fmt::format("{}", fmt::join(faults, "; ")));

@@ -1,6 +1,7 @@
 #include "src/image/load_image.h"
 
 #include "src/base/error.h"
+#include "src/image/image_integrity.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,6 +16,12 @@ namespace hpm {
 namespace {
 
 cv::Mat Decode(const std::filesystem::path& path, int flags) {
+  if (!IsWholePicture(path)) {
+    throw Error(ErrorCode::kBadInput,
+                path.string() +
+                    ": the end of the file is missing; undistort the images "
+                    "again or copy the file again");
+  }
   // OpenCV refuses more than 2^30 pixels by itself, from the header.
   cv::Mat image;
   try {

@@ -34,6 +34,11 @@ class BadImages(CliTest):
     def test_an_image_cut_after_its_header(self):
         self.assert_one_image_fails(lambda path: path.write_bytes(path.read_bytes()[:60]))
 
+    def test_half_an_image(self):
+        self.assert_one_image_fails(
+            lambda path: path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
+        )
+
     def test_a_bomb_is_refused_before_it_is_decoded(self):
         workspace = self.workspace()
         path = workspace / "images/view02.png"
@@ -50,6 +55,21 @@ class BadImages(CliTest):
         self.assert_no_partial_files(workspace)
         path.write_bytes(good)
         self.assert_rerun_completes(workspace)
+
+    def test_a_header_far_beyond_the_camera_costs_the_others_nothing(self):
+        for width, height in ((20000, 20000), (20000, 15000), (32, 65500)):
+            with self.subTest((width, height)):
+                workspace = self.workspace()
+                (workspace / "images/view02.png").write_bytes(bomb(width, height))
+                limit = 1 << 30
+                result = self.run_tool(
+                    workspace,
+                    *FAST,
+                    preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)),
+                )
+                self.assert_exit(result, 4, "view02.png")
+                self.assertIn(f"view02.png is {width}x{height}", result.stderr)
+                self.assert_complete(workspace, ["view00.png", "view01.png", "view03.png"])
 
     def test_a_picture_turned_after_the_reconstruction_fails_and_is_no_source(self):
         workspace = self.workspace()

@@ -213,6 +213,62 @@ TEST_F(LoadImage, GarbageAndEmptyFilesAreBadInput) {
   ExpectBadInput(folder_ / "empty.png");
 }
 
+std::string ReadAll(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+void WriteAll(const std::filesystem::path& path, const std::string& bytes) {
+  std::ofstream(path, std::ios::binary) << bytes;
+}
+
+TEST_F(LoadImage, FileCutAnywhereIsBadInput) {
+  for (const char* name :
+       {"a.jpg", "a.png", "a.bmp", "a.tif", "a.webp", "a.ppm", "a.jp2"}) {
+    SCOPED_TRACE(name);
+    const auto path = Write(name, RandomColours(97, 61));
+    const std::string whole = ReadAll(path);
+    EXPECT_EQ(LoadGrayImage(path, 97, 61).width, 97);
+    for (const double share : {0.5, 0.9, 0.99}) {
+      SCOPED_TRACE(share);
+      WriteAll(path,
+               whole.substr(0,
+                            static_cast<size_t>(
+                                share * static_cast<double>(whole.size()))));
+      ExpectBadInput(path);
+    }
+  }
+}
+
+TEST_F(LoadImage, ProgressiveJpegCutBetweenItsScansIsBadInput) {
+  const auto path = folder_ / "a.jpg";
+  cv::imwrite(
+      path.string(), RandomColours(97, 61), {cv::IMWRITE_JPEG_PROGRESSIVE, 1});
+  const std::string whole = ReadAll(path);
+  EXPECT_EQ(LoadGrayImage(path, 97, 61).width, 97);
+  WriteAll(path, whole.substr(0, whole.size() - 2));
+  ExpectBadInput(path);
+}
+
+TEST_F(LoadImage, WhatFollowsTheEndOfAJpegAndThumbnailsInItDoNotMatter) {
+  const auto path = Write("a.jpg", RandomColours(97, 61));
+  const std::string whole = ReadAll(path);
+  // A picture of its own in a segment of the application.
+  const std::string thumbnail =
+      ReadAll(Write("small.jpg", RandomColours(8, 8)));
+  const size_t length = thumbnail.size() + 2;
+  const std::string segment = std::string("\xff\xe1") +
+                              static_cast<char>(length >> 8) +
+                              static_cast<char>(length & 0xff) + thumbnail;
+  const std::string with_thumbnail =
+      whole.substr(0, 2) + segment + whole.substr(2);
+  WriteAll(path,
+           with_thumbnail + "appended by a camera" + std::string(100, '\0'));
+  EXPECT_EQ(LoadGrayImage(path, 97, 61).width, 97);
+  WriteAll(path, with_thumbnail.substr(0, with_thumbnail.size() / 2));
+  ExpectBadInput(path);
+}
+
 TEST_F(LoadImage, FileCutInItsHeaderIsBadInput) {
   const auto path = Write("cut.png", RandomColours(8, 8));
   std::filesystem::resize_file(path, 20);
