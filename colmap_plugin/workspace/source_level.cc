@@ -7,8 +7,10 @@
 namespace hpm {
 namespace {
 
-// Halved from here on: then the source still has at least three quarters of the
-// reference's pixels, in length.
+// From here on a source is halved. In a rendered room, matching against sources
+// of 1.3, 1.5, 1.7 and 2 times the zoom put 5.8, 9.6, 10.0 and 7.9 % more
+// pixels within 2 % of the truth when they were halved; sources that differ no
+// more than pictures of one camera along a walk do stay as they are.
 constexpr double kMinRatio = 1.5;
 
 // The source's pixels per pixel of the reference, in length, on surfaces that
