@@ -168,6 +168,12 @@ RunSummary PatchMatchController::Run() {
   const Schedule schedule = MakeSchedule(MakeScheduleOptions(options_));
   StagePlan plan(workspace, problems, schedule, options_);
   PrepareOutputs(workspace, problems, BytesToWrite(problems, plan), log_);
+  if (!plan.damaged_maps().empty()) {
+    log_(LogLevel::kWarning,
+         fmt::format("{} maps are damaged and computed anew, the first: {}",
+                     plan.damaged_maps().size(),
+                     plan.damaged_maps().begin()->string()));
+  }
   const int num_sources = CountNeededSources(problems, plan);
   if (num_sources > 0) {
     log_(

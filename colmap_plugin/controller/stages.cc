@@ -286,21 +286,28 @@ bool StagePlan::IsFinished(int s, int p, bool may_be_cut) {
     if (!is_cut || !may_be_cut) return false;
   }
   const Camera camera = CameraOf(s, image);
-  const auto fits = [&](const MapHeader& header, int channels) {
+  const auto has_size = [&](const MapHeader& header, int channels) {
     return header.width == camera.width && header.height == camera.height &&
            header.channels == channels;
   };
-  try {
-    if (WritesGraph(s, image)) {
-      const ConsistencyGraph graph = ReadConsistencyGraph(files.graph);
-      if (graph.width != camera.width || graph.height != camera.height) {
-        return false;
-      }
+  const auto is_whole = [&](const std::filesystem::path& file, int channels) {
+    bool fits = false;
+    try {
+      fits = has_size(ReadMapHeader(file), channels);
+    } catch (const Error&) {
+      // Torn or damaged: made anew.
     }
-    return fits(ReadMapHeader(files.depth), 1) &&
-           fits(ReadMapHeader(files.normal), 3);
+    if (!fits) damaged_maps_.insert(file);
+    return fits;
+  };
+  const bool depth_is_whole = is_whole(files.depth, 1);
+  if (!is_whole(files.normal, 3) || !depth_is_whole) return false;
+  if (!WritesGraph(s, image)) return true;
+  try {
+    const ConsistencyGraph graph = ReadConsistencyGraph(files.graph);
+    return graph.width == camera.width && graph.height == camera.height;
   } catch (const Error&) {
-    return false;  // torn or damaged: made anew
+    return false;
   }
 }
 

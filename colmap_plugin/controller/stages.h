@@ -9,6 +9,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -54,6 +55,10 @@ class StagePlan {
   // True if maps exist that were made with other options or by another program,
   // in the eyes of all plans so far.
   bool ReplacesForeignMaps() const { return replaces_foreign_maps_; }
+  // Maps with a valid stamp that are cut off, empty or otherwise damaged.
+  const std::set<std::filesystem::path>& damaged_maps() const {
+    return damaged_maps_;
+  }
   const std::string& FingerprintOf(int s, int p) const {
     return fingerprints_[s][p];
   }
@@ -100,7 +105,8 @@ class StagePlan {
   std::vector<int> problem_of_image_;
   std::vector<std::vector<std::string>> fingerprints_;  // [stage][problem]
   std::vector<std::vector<bool>> needed_;               // [stage][problem]
-  bool found_foreign_maps_ = false;                     // by the newest plan
+  std::set<std::filesystem::path> damaged_maps_;
+  bool found_foreign_maps_ = false;    // by the newest plan
   bool replaces_foreign_maps_ = true;  // until a plan finds none
 };
 

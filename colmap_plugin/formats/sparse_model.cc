@@ -86,6 +86,14 @@ SparseModel ReadSparseModel(const fs::path& folder, const LogSink& log) {
   for (const Encoding* encoding : {&kBinary, &kText}) {
     if (IsComplete(folder, *encoding)) return Read(folder, *encoding, log);
   }
+  std::error_code error;
+  if (!fs::exists(folder / "cameras.bin", error) && error) {
+    throw Error(ErrorCode::kBadInput,
+                fmt::format("cannot look into {}: {}; make the folder readable "
+                            "and searchable",
+                            folder.string(),
+                            error.message()));
+  }
   // The mapper numbers its models; a dense workspace has one, without number.
   const fs::path numbered = folder / "0";
   std::string remedy = "run image_undistorter first";

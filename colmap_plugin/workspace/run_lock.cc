@@ -102,6 +102,15 @@ bool IsSameFile(int fd, const fs::path& path) {
                   full ? "make room on the disk" : "make the folder writable"));
 }
 
+[[noreturn]] void ThrowCannotRead(const fs::path& path, int error) {
+  throw Error(
+      ErrorCode::kBadInput,
+      fmt::format("cannot read {}: {}; make it readable, or delete it if no "
+                  "other run works on this workspace",
+                  path.string(),
+                  std::generic_category().message(error)));
+}
+
 std::string NameOf(const LockOwner& owner) {
   return fmt::format("host {}, process {}", QuotedName(owner.host), owner.pid);
 }
@@ -241,14 +250,14 @@ void RunLock::RemoveStale(const LockOwner& self, const LogSink& log) {
   const FileDescriptor file(OpenLock(path_));
   if (file.get() < 0) {
     if (errno == ENOENT) return;
-    ThrowSystemError(path_, errno);
+    ThrowCannotRead(path_, errno);
   }
   std::optional<std::string> contents;
   std::optional<LockOwner> owner;
   for (int i = 0; i <= kMaxTries && !owner; ++i) {
     if (i > 0) std::this_thread::sleep_for(kTryInterval);
     contents = ReadAll(file.get());
-    if (!contents) ThrowSystemError(path_, errno);
+    if (!contents) ThrowCannotRead(path_, errno);
     owner = ParseLockOwner(*contents);
   }
   const bool is_local = rules_.is_local(file.get());

@@ -75,6 +75,9 @@ HPM_HD Plane UpsamplePlaneAt(const Plane* planes,
   }
   if (!(weights > 0)) return none;
   const float z = weights / inverse_depth;
+  // Squares of what all taps of another grey leave would underflow.
+  constexpr float kLittleWeight = 1e-6f;
+  if (weights < kLittleWeight) normal = (1 / weights) * normal;
   normal = Normalized(normal);
   if (!(z >= depth_min && z <= depth_max) || !(Dot(normal, ray) < 0))
     return none;

@@ -33,6 +33,10 @@ class BadMaps(CliTest):
             (workspace / "stereo" / name).write_bytes(fault(data))
         result = self.assert_rerun_completes(workspace)
         self.assertIn("Processing view", result.stdout)
+        self.assertEqual(result.stderr.count("damaged"), 1, result.stderr)
+        # Blanks before the header are read over.
+        self.assertIn("15 maps are damaged and computed anew", result.stderr)
+        self.assertIn("depth_maps/view00.png.geometric.bin", result.stderr)
         self.assert_same_maps(map_files(workspace), good)
 
     def test_a_deleted_map_is_recomputed_and_the_others_are_kept(self):

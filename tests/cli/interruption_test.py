@@ -172,6 +172,23 @@ class Resources(CliTest):
         self.assertNotIn("Processing view", result.stdout)
         self.assert_rerun_completes(workspace)
 
+    @unittest.skipUnless(os.geteuid() == 0, "becoming another user needs root")
+    def test_what_cannot_be_read_is_exit_3_with_a_remedy_that_helps(self):
+        workspace = self.workspace()
+        for path in [workspace, *workspace.rglob("*")]:
+            os.chown(path, NOBODY, NOBODY)
+        lock = workspace / "stereo/hpm_mvs/lock"
+        lock.parent.mkdir(exist_ok=True)
+        os.chown(lock.parent, NOBODY, NOBODY)
+        lock.write_text("")
+        lock.chmod(0)
+        self.assert_exit(self.run_as_nobody(workspace), 3, lock, "cannot read", "delete it")
+        lock.unlink()
+        (workspace / "sparse").chmod(0o600)
+        self.assert_exit(self.run_as_nobody(workspace), 3, "sparse", "searchable")
+        (workspace / "sparse").chmod(0o700)
+        self.assert_rerun_completes(workspace)
+
     def test_missing_output_folders_are_created(self):
         workspace = self.workspace()
         for name in ("depth_maps", "normal_maps", "consistency_graphs"):

@@ -37,6 +37,22 @@ TEST(UpsamplePrior, ASlantedPlaneStaysExact) {
   }
 }
 
+TEST(UpsamplePrior, NormalsAreUnitWhereEveryTapHasAnotherGrey) {
+  const Camera camera = PriorCamera(50, 34);
+  const Camera low = LevelCamera(camera, 1);
+  // Taps are read at odd pixels of odd rows.
+  GrayImage guide = Constant(50, 34, 0);
+  for (int row = 1; row < 34; row += 2) {
+    for (int col = 1; col < 50; col += 2) guide.data[row * 50 + col] = 255;
+  }
+  const std::vector<Plane> planes(static_cast<size_t>(low.width) * low.height,
+                                  TiltedPlane());
+  for (const Plane& plane : UpsamplePrior(planes, 1, camera, guide, kRange)) {
+    ASSERT_GT(plane.distance, 0);
+    EXPECT_NEAR(Norm(plane.normal), 1, 1e-5f);
+  }
+}
+
 TEST(UpsamplePrior, ADepthStepFollowsTheGuide) {
   const Camera camera = PriorCamera(32, 16);
   GrayImage guide = Constant(32, 16, 20);
