@@ -50,14 +50,14 @@ TEST_F(RunBudgetTest, AFileIsDecodedAsAWhole) {
 TEST_F(RunBudgetTest, ALargeJpegIsDecodedAtReducedScale) {
   WriteImage(0, ".jpg", 10, CV_8UC3);
   EXPECT_EQ(Decoded(0), 200u * 150u * 4u);
-  WriteImage(0, ".jpg", 20, CV_8UC3);
-  EXPECT_EQ(Decoded(0), 200u * 150u * 4u);
+  WriteImage(0, ".jpg", 16, CV_8UC3);
+  EXPECT_EQ(Decoded(0), 160u * 120u * 4u);
 }
 
 TEST_F(RunBudgetTest, OneLargeSourceCounts) {
   const uint64_t before = Working();
-  WriteImage(2, ".png", 30, CV_8UC3);
-  EXPECT_EQ(Working(), before + 899u * 40u * 30u * 4u);
+  WriteImage(2, ".png", 15, CV_8UC3);
+  EXPECT_EQ(Working(), before + 224u * 40u * 30u * 4u);
 }
 
 }  // namespace
