@@ -43,12 +43,9 @@ class Judge {
     const auto x = static_cast<float>(col), y = static_cast<float>(row);
     const Vec3f ray = RayAt(ref_, x, y);
     const Vec3f point = (-plane.distance / Dot(plane.normal, ray)) * ray;
-    const Vec3f to_src = centers_[j] - point;
-    const float distance = Norm(to_src);
-    if (!(distance > 0) || Dot(to_src, plane.normal) <= 0)
-      return FilterCriterion::kFacing;
-    if (Dot(to_src, -Normalized(point)) > max_cos_ * distance)
-      return FilterCriterion::kAngle;
+    const Sight sight = SightOf(point, plane.normal, centers_[j], max_cos_);
+    if (sight == Sight::kBack) return FilterCriterion::kFacing;
+    if (sight == Sight::kSmallAngle) return FilterCriterion::kAngle;
     if (!geometric_) return FilterCriterion::kCorrelation;
     if (!depth_views_[j].HasDepth()) return FilterCriterion::kGeometry;
     const Reprojection there =

@@ -32,15 +32,12 @@ int NeededViews::CountSeeing(size_t at) const {
   const Plane& plane = map_.planes[at];
   const Vec3f ray = RayAt(views_.ref.camera, x, y);
   const Vec3f point = (-plane.distance / Dot(plane.normal, ray)) * ray;
-  const Vec3f to_ref = -Normalized(point);
   const PlaneSlope slope = SlopeOf(views_.ref.camera, plane);
   int count = 0;
   for (size_t j = 0; j < warps_.size(); ++j) {
     if (geometric_ && views_.srcs[j].inverse_depth == nullptr) continue;
-    const Vec3f to_src = centers_[j] - point;
-    const float distance = Norm(to_src);
-    if (!(distance > 0) || Dot(to_src, plane.normal) <= 0) continue;
-    if (Dot(to_src, to_ref) > max_cos_ * distance) continue;
+    if (SightOf(point, plane.normal, centers_[j], max_cos_) != Sight::kFront)
+      continue;
     const Vec3f q = WarpPatch(warps_[j], slope, x, y).origin;
     const float u = q.x / q.z, v = q.y / q.z;
     count += q.z > 0 && u >= -0.5f && v >= -0.5f &&

@@ -1,9 +1,10 @@
 #include "colmap_plugin/workspace/file_system.h"
 
+#include "colmap_plugin/formats/atomic_file.h"
+#include "src/base/error.h"
+
 #include <algorithm>
-#include <cstdlib>
 #include <iterator>
-#include <string>
 
 #include <sys/stat.h>
 #include <unistd.h>
@@ -49,15 +50,16 @@ bool IsOnLocalFileSystem(int fd) {
 }
 
 std::optional<timespec> FileSystemTime(const std::filesystem::path& folder) {
-  std::string name = (folder / "clock.XXXXXX").string();
-  const int fd = mkstemp(name.data());
-  if (fd < 0) return std::nullopt;
-  struct stat status = {};
+  const std::filesystem::path file = folder / "clock";
   // Only what has reached a server is stamped by it.
-  const bool known =
-      write(fd, "x", 1) == 1 && fsync(fd) == 0 && fstat(fd, &status) == 0;
-  close(fd);
-  unlink(name.c_str());
+  try {
+    WriteFileAtomically(file, "x");
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+  struct stat status = {};
+  const bool known = stat(file.c_str(), &status) == 0;
+  unlink(file.c_str());
   if (!known) return std::nullopt;
 #ifdef __APPLE__
   return status.st_mtimespec;

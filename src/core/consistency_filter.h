@@ -14,6 +14,27 @@ struct FilterParams {
   int min_num_consistent;
 };
 
+enum class Sight {
+  kBack,        // the source looks at the back of the surface
+  kSmallAngle,  // it sees the front, from about where the reference does
+  kFront,
+};
+
+// How a source whose camera centre is `src_center` sees the surface of this
+// normal at `point`; all in the reference camera frame. `max_cos`: of the
+// smallest angle between the rays from the point to both cameras.
+HPM_HD Sight SightOf(const Vec3f& point,
+                     const Vec3f& normal,
+                     const Vec3f& src_center,
+                     float max_cos) {
+  const Vec3f to_src = src_center - point;
+  const float distance = Norm(to_src);
+  if (!(distance > 0) || Dot(to_src, normal) <= 0) return Sight::kBack;
+  const Vec3f to_ref = -Normalized(point);
+  return Dot(to_src, to_ref) > max_cos * distance ? Sight::kSmallAngle
+                                                  : Sight::kFront;
+}
+
 // Bit j: source view j is consistent. src_centers: camera centres in the
 // reference camera frame.
 template <class Cost>
@@ -27,15 +48,12 @@ HPM_HD uint32_t ConsistentViews(const VisitParams& params,
   const Vec3f ray =
       RayAt(params.ref, static_cast<float>(col), static_cast<float>(row));
   const Vec3f point = (-plane.distance / Dot(plane.normal, ray)) * ray;
-  const Vec3f to_ref = -Normalized(point);
   const float max_cos = cosf(filter.min_triangulation_angle);
   uint8_t views[kMaxViews];
   int num_views = 0;
   for (int j = 0; j < params.num_views; ++j) {
-    const Vec3f to_src = src_centers[j] - point;
-    const float distance = Norm(to_src);
-    if (!(distance > 0) || Dot(to_src, plane.normal) <= 0) continue;
-    if (Dot(to_src, to_ref) > max_cos * distance) continue;
+    if (SightOf(point, plane.normal, src_centers[j], max_cos) != Sight::kFront)
+      continue;
     if (params.geometric && !cost.HasDepth(j)) continue;
     views[num_views++] = static_cast<uint8_t>(j);
   }

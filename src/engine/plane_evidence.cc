@@ -44,13 +44,13 @@ bool IsNearestOfItsKind(const std::vector<RegionPlane>& list,
   return true;
 }
 
-// The pixels of the lattice, by region, that can witness. A window that reaches
+// The pixels of the lattice, by region, that can tell. A window that reaches
 // over the rim matches what lies there, at the depth of that, and would find
 // any sky at the depth of the roofs below it; so only pixels count whose region
 // fills the window, or all of a region too narrow to have such.
-std::vector<std::vector<size_t>> WitnessesOf(const WeakRegions& regions,
-                                             int lattice_step,
-                                             int patch_radius) {
+std::vector<std::vector<size_t>> PixelsThatTell(const WeakRegions& regions,
+                                                int lattice_step,
+                                                int patch_radius) {
   std::vector<std::vector<size_t>> all(regions.num_regions + 1);
   std::vector<std::vector<size_t>> inner(all.size());
   for (int row = 0; row < regions.height; row += lattice_step) {
@@ -92,7 +92,7 @@ std::vector<std::vector<PlaneEvidence>> FindEvidence(
   const float parallax = MedianParallax(views);
   if (!(parallax > 0)) return result;
   const float shift = kShift / parallax;
-  const auto witnesses = WitnessesOf(regions, lattice_step, patch_radius);
+  const auto telling = PixelsThatTell(regions, lattice_step, patch_radius);
   HypothesisMap map(regions.width, regions.height);
   // The k-th candidates of all regions together.
   for (size_t k = 0; k < most; ++k) {
@@ -100,7 +100,7 @@ std::vector<std::vector<PlaneEvidence>> FindEvidence(
     std::vector<size_t> labels;
     for (size_t label = 1; label < of_region.size(); ++label) {
       if (k >= of_region[label].size()) continue;
-      for (const size_t at : witnesses[label]) {
+      for (const size_t at : telling[label]) {
         const size_t cell =
             candidates.CellAt(static_cast<int>(at % regions.width),
                               static_cast<int>(at / regions.width));

@@ -23,7 +23,8 @@ struct PlaneEvidence {
 };
 
 // As `candidates.of_region`. Looks at every `lattice_step`-th pixel of a region
-// whose window of `patch_radius` the region fills, each under the nearest
+// whose window of `patch_radius` the region fills (at every one if there are
+// too few), each under the nearest
 // candidate of its inside and of its rim.
 std::vector<std::vector<PlaneEvidence>> FindEvidence(
     const ViewSet& views,
