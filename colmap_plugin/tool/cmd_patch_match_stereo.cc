@@ -5,6 +5,7 @@
 #include "colmap_plugin/tool/run_summary.h"
 #include "src/base/error.h"
 
+#include <cerrno>
 #include <exception>
 #include <new>
 #include <ostream>
@@ -56,7 +57,9 @@ int RunAndReport(const ControllerOptions& options,
 }  // namespace
 
 int Print(const std::string& text, const ToolEnvironment& tool) {
+  errno = 0;
   if (*tool.out << text << std::flush) return 0;
+  if (errno == EPIPE) return 0;  // `| head -1` has seen enough
   *tool.err << "ERROR: standard output cannot be written; check where it goes\n"
             << std::flush;
   return ExitCode(ErrorCode::kFailure);

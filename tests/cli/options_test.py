@@ -33,6 +33,16 @@ class Help(CliTest):
             self.assertEqual(result.returncode, 1)
             self.assertIn(b"standard output", result.stderr)
 
+    def test_a_reader_that_has_seen_enough_is_no_error(self):
+        for arguments in (["help"], ["version"], ["patch_match_stereo", "--help"]):
+            reader, writer = os.pipe()
+            os.close(reader)  # as `| head -1` and `| grep -q` do
+            result = subprocess.run(
+                [HPM_MVS, *arguments], stdout=writer, stderr=subprocess.PIPE, timeout=60
+            )
+            os.close(writer)
+            self.assertEqual((result.returncode, result.stderr), (0, b""))
+
     def test_help_wins_over_other_options(self):
         self.assertEqual(run("patch_match_stereo", "--workspace_path", "x", "--help").returncode, 0)
 
