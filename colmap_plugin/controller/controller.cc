@@ -336,11 +336,13 @@ void PatchMatchController::RunStages(const Workspace& workspace,
         event.fraction = done_work / total_work;
         if (fraction < 1) progress_(event);
       };
+      bool has_failed;
       {
         const std::lock_guard<std::mutex> lock(mutex);
         event.image_number = ++number;
-        if (statistics->HasFailed(name) || failed_sources.count(p) > 0) return;
+        has_failed = statistics->HasFailed(name) || failed_sources.count(p) > 0;
       }
+      if (has_failed) return count(1);
       const bool is_reference = problems[p].is_reference;
       const std::string stage_name = plan.NameOf(s, problems[p].ref_image);
       log_(LogLevel::kInfo,

@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,8 +36,9 @@ struct RunSummary {
   std::vector<std::string>
       failed;  // names of images that could not be computed
   double seconds = 0;
-  double valid_pixel_share = 0;  // of the final maps written in this run, 0..1
-  FilterLosses filter_losses;    // the same, of what has no depth
+  // Of the final maps written in this run, 0..1; nothing where there were none.
+  std::optional<double> valid_pixel_share;
+  FilterLosses filter_losses;  // the same, of what has no depth
   // Images of the workspace with final maps: what fusion will find.
   int num_fusable = 0;
   double ncc_evaluations_per_pixel = 0;

@@ -61,9 +61,9 @@ std::vector<std::string> SummaryLines(const ControllerOptions& options,
       summary.num_computed,
       summary.num_kept,
       summary.failed.size()));
-  if (summary.num_computed > 0) {
+  if (summary.valid_pixel_share) {
     lines.push_back(fmt::format("Pixels with a depth: {:.1f} %",
-                                100 * summary.valid_pixel_share));
+                                100 * *summary.valid_pixel_share));
     const std::string losses = LossesLine(summary.filter_losses);
     if (!losses.empty()) lines.push_back(losses);
   }

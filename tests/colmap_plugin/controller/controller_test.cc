@@ -155,7 +155,9 @@ TEST_F(ControllerTest, NothingOutsideAGivenRangeIsPublished) {
       num_false += std::abs(depth[i] / truth.depth[i] - 1) > 0.05;
     }
     EXPECT_LT(num_false, 0.01 * kWidth * kHeight);
-    if (max > nearest) EXPECT_GT(num_published, 0.3 * kWidth * kHeight);
+    if (max > nearest) {
+      EXPECT_GT(num_published, 0.3 * kWidth * kHeight);
+    }
   }
 }
 

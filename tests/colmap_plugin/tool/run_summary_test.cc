@@ -39,6 +39,14 @@ TEST(RunSummaryTest, TellsWhatWasDoneAndWhatComesNext) {
                 "--output_path /data/dense/fused.ply"}));
 }
 
+// As when a run only makes again what an earlier stage lost.
+TEST(RunSummaryTest, WithoutFinalMapsThereIsNoShareOfThem) {
+  RunSummary summary;
+  summary.num_problems = summary.num_computed = 3;
+  EXPECT_THAT(SummaryLines({}, summary),
+              Not(Contains(HasSubstr("Pixels with a depth"))));
+}
+
 TEST(RunSummaryTest, NamesThePhotometricMapsWithoutGeometricPasses) {
   ControllerOptions options;
   options.patch_match.geom_consistency = false;
