@@ -8,8 +8,8 @@ says who is better by more than noise.
 The folder of --scenes holds dense workspaces with gt/depth_maps and, for F1,
 gt/points.ply, or with both in gt.tar.xz. A scene's suite.json may name its F1 thresholds
 (model units), the min_num_pixels of its fusion and which of its images take part; see
-SceneSettings. Everything after -- goes to hpm_mvs. Maps are written unfiltered, so that every pixel counts; COLMAP's fusion does its
-own checks. What --out holds already is not run again, so a second call adds to it.
+SceneSettings. Everything after -- goes to hpm_mvs. Maps are written unfiltered, so that every pixel counts
+(-- --PatchMatchStereo.filter 1 judges them as published); COLMAP's fusion does its own checks. What --out holds already is not run again, so a second call adds to it.
 With --only_report nothing is run.
 """
 import argparse
@@ -25,6 +25,7 @@ import subprocess
 import sys
 import tempfile
 
+FILTER = "--PatchMatchStereo.filter"
 PARTS = ("all", "low_texture", "rest", "edges")  # of eval_depth
 DEPTH_SHARES = {"0.5%": 2, "1%": 3, "2%": 4, "5%": 5}  # index into eval_depth's thresholds
 
@@ -99,7 +100,7 @@ def score(build, scene, method, seed, options, keep):
         cpu_seconds = run(
             [build / "colmap_plugin/tool/hpm_mvs", "patch_match_stereo", "--workspace_path", folder,
              "--random_seed", seed, "--Hpm.method", method, "--PatchMatchStereo.num_threads", 1,
-             "--PatchMatchStereo.filter", 0, *options], log)
+             *([] if FILTER in options else [FILTER, 0]), *options], log)
         record = json.loads((folder / "stereo/hpm_mvs/run.json").read_text())
         result = {
             "scene": scene.name, "method": method, "seed": seed, "cpu_seconds": cpu_seconds,

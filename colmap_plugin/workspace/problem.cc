@@ -2,13 +2,13 @@
 
 #include "colmap_plugin/formats/image_name.h"
 #include "colmap_plugin/formats/patch_match_cfg.h"
+#include "colmap_plugin/workspace/automatic_sources.h"
 #include "colmap_plugin/workspace/cfg_check.h"
 #include "colmap_plugin/workspace/depth_range.h"
-#include "colmap_plugin/workspace/overlap_selection.h"
-#include "colmap_plugin/workspace/source_selection.h"
 #include "src/base/error.h"
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -44,11 +44,8 @@ class ProblemReader {
         log_(log),
         path_(options.config_path.empty() ? workspace.PatchMatchCfgPath()
                                           : options.config_path),
-        selector_(workspace),
-        ranges_(workspace, options.depth_min, options.depth_max) {
-    for (int i = 0; i < workspace.num_images(); ++i)
-      badly_tracked_.push_back(selector_.NumSharedPoints(i) < kEnoughPoints);
-  }
+        automatic_(workspace),
+        ranges_(workspace, options.depth_min, options.depth_max) {}
 
   std::vector<StereoProblem> Read() {
     std::vector<bool> seen(workspace_.num_images(), false);
@@ -77,13 +74,13 @@ class ProblemReader {
         without_sources_.Add(entry.ref_name);
         continue;
       }
-      TakeThoseWithPictures(entry, &sources);
+      TakeThoseWithPictures(workspace_, MostAutomatic(entry), &sources);
       if (!range) {
         without_range_.Add(entry.ref_name);
         continue;
       }
       if (ranges_.IsEstimated(ref)) estimated_.Add(entry.ref_name);
-      if (!SharesPoints(ref)) unshared_.Add(entry.ref_name);
+      if (!automatic_.SharesPoints(ref)) unshared_.Add(entry.ref_name);
       if (sources.size() > MaxNumSources()) {
         sources.resize(MaxNumSources());
         ++num_cut_;
@@ -186,10 +183,6 @@ class ProblemReader {
   }
 
   // What stereo_fusion goes by.
-  bool SharesPoints(int image) const {
-    return selector_.NumSharedPoints(image) > 0;
-  }
-
   template <class... Args>
   void Warn(fmt::format_string<Args...> format, Args&&... args) const {
     if (log_)
@@ -220,6 +213,14 @@ class ProblemReader {
       IndexOf(name, entry.src_line);
   }
 
+  // N of "__auto__, N", else no bound.
+  static size_t MostAutomatic(const PatchMatchCfgEntry& entry) {
+    const bool is_bound = entry.sources == PatchMatchCfgEntry::Sources::kAuto &&
+                          entry.max_num_auto >= 0;
+    return is_bound ? static_cast<size_t>(entry.max_num_auto)
+                    : std::numeric_limits<size_t>::max();
+  }
+
   // With images that have no picture; for "__auto__, N" so many that N have
   // one.
   std::vector<int> Sources(const PatchMatchCfgEntry& entry,
@@ -227,86 +228,16 @@ class ProblemReader {
                            const std::optional<DepthRange>& range) const {
     switch (entry.sources) {
       case PatchMatchCfgEntry::Sources::kAuto:
-        return AutoSources(entry, ref, range);
+        return automatic_.Best(ref,
+                               range,
+                               options_.min_triangulation_angle,
+                               std::min(MostAutomatic(entry), MaxNumSources()));
       case PatchMatchCfgEntry::Sources::kAll:
-        return AllSources(ref, range);
+        return automatic_.All(ref, range);
       case PatchMatchCfgEntry::Sources::kList:
         break;
     }
     return ListedSources(entry, ref);
-  }
-
-  void TakeThoseWithPictures(const PatchMatchCfgEntry& entry,
-                             std::vector<int>* sources) const {
-    const auto without = [this](int i) { return !workspace_.has_picture(i); };
-    sources->erase(std::remove_if(sources->begin(), sources->end(), without),
-                   sources->end());
-    if (entry.sources != PatchMatchCfgEntry::Sources::kAuto) return;
-    const auto max_num = static_cast<size_t>(entry.max_num_auto);
-    if (entry.max_num_auto >= 0 && sources->size() > max_num)
-      sources->resize(max_num);
-  }
-
-  std::vector<int> AutoSources(const PatchMatchCfgEntry& entry,
-                               int ref,
-                               const std::optional<DepthRange>& range) const {
-    if (entry.max_num_auto == 0) return {};
-    std::vector<int> sources =
-        selector_.Select(ref, options_.min_triangulation_angle, /*max_num=*/-1);
-    const size_t max_num = entry.max_num_auto < 0
-                               ? MaxNumSources()
-                               : static_cast<size_t>(entry.max_num_auto);
-    // Images whose tracks tell too little are not missed by others, either.
-    AddOverlapping(ref,
-                   range,
-                   options_.min_triangulation_angle,
-                   badly_tracked_[ref] ? all_ : badly_tracked_,
-                   max_num,
-                   &sources);
-    return sources;
-  }
-
-  // Views that look at the same place, behind those that share points, until
-  // max_num have a picture.
-  void AddOverlapping(int ref,
-                      const std::optional<DepthRange>& range,
-                      double min_angle,
-                      const std::vector<bool>& candidates,
-                      size_t max_num,
-                      std::vector<int>* sources) const {
-    auto num_with_picture = static_cast<size_t>(
-        std::count_if(sources->begin(), sources->end(), [this](int i) {
-          return workspace_.has_picture(i);
-        }));
-    if (!range || num_with_picture >= max_num) return;
-    for (const int image :
-         overlap_.Select(ref, *range, min_angle, candidates)) {
-      if (num_with_picture >= max_num) break;
-      if (std::find(sources->begin(), sources->end(), image) !=
-          sources->end()) {
-        continue;
-      }
-      sources->push_back(image);
-      num_with_picture += workspace_.has_picture(image);
-    }
-  }
-
-  // Overlapping images first, so that the cut to MaxNumSources keeps the useful
-  // ones.
-  std::vector<int> AllSources(int ref,
-                              const std::optional<DepthRange>& range) const {
-    std::vector<int> sources =
-        selector_.Select(ref, /*min_angle=*/0, /*max_num=*/-1);
-    if (badly_tracked_[ref]) {
-      AddOverlapping(ref, range, /*min_angle=*/0, all_, all_.size(), &sources);
-    }
-    std::vector<bool> taken(workspace_.num_images(), false);
-    taken[ref] = true;
-    for (const int source : sources) taken[source] = true;
-    for (int i = 0; i < workspace_.num_images(); ++i) {
-      if (!taken[i] && workspace_.usable(i)) sources.push_back(i);
-    }
-    return sources;
   }
 
   std::vector<int> ListedSources(const PatchMatchCfgEntry& entry,
@@ -335,13 +266,8 @@ class ProblemReader {
   const ProblemOptions& options_;
   const LogSink& log_;
   const std::filesystem::path path_;
-  const SourceSelector selector_;
+  const AutomaticSources automatic_;
   const DepthRanges ranges_;
-  const OverlapSelector overlap_{workspace_};
-  const std::vector<bool> all_ =
-      std::vector<bool>(workspace_.num_images(), true);
-  // Images that share too few points with others for a choice of sources.
-  std::vector<bool> badly_tracked_;
   int num_cut_ = 0;
   Affected without_sources_;
   Affected without_range_;

@@ -1,6 +1,6 @@
 #include "colmap_plugin/workspace/source_problems.h"
 
-#include "colmap_plugin/workspace/source_selection.h"
+#include "colmap_plugin/workspace/automatic_sources.h"
 
 #include <algorithm>
 #include <map>
@@ -38,26 +38,25 @@ std::vector<StereoProblem> SourceProblems(
     listed_by.erase(problem.ref_image);
   if (listed_by.empty()) return {};
 
-  const SourceSelector selector(workspace);
+  const AutomaticSources automatic(workspace);
   const DepthRanges ranges(workspace, options.depth_min, options.depth_max);
-  const int max_num = std::min(kMaxNumSources, options.max_num_src_images);
+  const auto max_num = static_cast<size_t>(
+      std::clamp(options.max_num_src_images, 0, kMaxNumSources));
   std::vector<StereoProblem> result;
   for (const auto& [image, references] : listed_by) {
     StereoProblem problem;
     problem.ref_image = image;
     problem.is_reference = false;
-    for (const int src : selector.Select(
-             image, options.min_triangulation_angle, /*max_num=*/-1)) {
-      if (workspace.has_picture(src)) problem.src_images.push_back(src);
-    }
+    const DepthRange range =
+        ranges.ForImage(image).value_or(RangeOf(references));
+    problem.src_images =
+        automatic.Best(image, range, options.min_triangulation_angle, max_num);
+    TakeThoseWithPictures(workspace, max_num, &problem.src_images);
     if (problem.src_images.empty()) {
       for (const StereoProblem* reference : references)
         problem.src_images.push_back(reference->ref_image);
+      TakeThoseWithPictures(workspace, max_num, &problem.src_images);
     }
-    if (problem.src_images.size() > static_cast<size_t>(max_num))
-      problem.src_images.resize(max_num);
-    const DepthRange range =
-        ranges.ForImage(image).value_or(RangeOf(references));
     problem.depth_min = range.min;
     problem.depth_max = range.max;
     result.push_back(problem);

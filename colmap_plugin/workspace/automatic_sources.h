@@ -1,0 +1,56 @@
+// The sources of a reference where the user leaves the choice to us.
+#pragma once
+
+#include "colmap_plugin/workspace/depth_range.h"
+#include "colmap_plugin/workspace/overlap_selection.h"
+#include "colmap_plugin/workspace/source_selection.h"
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace hpm {
+
+// By the points that images share, as COLMAP does; behind them, where tracks
+// tell too little, those that look at the same place. Images without a picture
+// are among them: who needs pictures leaves them out.
+class AutomaticSources {
+ public:
+  explicit AutomaticSources(const Workspace& workspace);
+
+  // Best first. All that share points under at least min_angle (degrees), and
+  // of others so many that max_num have a picture. `range`: the reference's
+  // depths; without, only shared points count.
+  std::vector<int> Best(int ref_image,
+                        const std::optional<DepthRange>& range,
+                        double min_angle,
+                        size_t max_num) const;
+
+  // All usable images but the reference; those that see the same come first.
+  std::vector<int> All(int ref_image,
+                       const std::optional<DepthRange>& range) const;
+
+  bool SharesPoints(int image) const;
+
+ private:
+  void AddOverlapping(int ref,
+                      const std::optional<DepthRange>& range,
+                      double min_angle,
+                      const std::vector<bool>& candidates,
+                      size_t max_num,
+                      std::vector<int>* sources) const;
+
+  const Workspace& workspace_;
+  const SourceSelector selector_;
+  const OverlapSelector overlap_;
+  const std::vector<bool> all_;
+  // Images that share too few points with others for a choice of sources.
+  std::vector<bool> badly_tracked_;
+};
+
+// Leaves out images without a picture, and what exceeds max_num.
+void TakeThoseWithPictures(const Workspace& workspace,
+                           size_t max_num,
+                           std::vector<int>* images);
+
+}  // namespace hpm
