@@ -12,8 +12,11 @@
 namespace hpm {
 
 constexpr int kWarpsPerBlock = 2;
-// Eight blocks per multiprocessor: at most 128 registers per thread.
-constexpr int kBlocksPerProcessor = 8;
+// At most 128 registers per thread. The benchmark compares other numbers.
+#if !defined(HPM_BLOCKS_PER_PROCESSOR)
+#define HPM_BLOCKS_PER_PROCESSOR 8
+#endif
+constexpr int kBlocksPerProcessor = HPM_BLOCKS_PER_PROCESSOR;
 
 struct DeviceWarp {
   int lane_number;

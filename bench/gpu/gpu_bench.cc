@@ -1,40 +1,36 @@
-// Times the CUDA backend on closed-form scenes; see bench/gpu_bench.sh.
+// Times the kernels of the CUDA backend on a closed-form scene, by variant; see
+// bench/gpu_bench.sh. Whole runs are timed by bench/gpu/pipeline.py.
 //
 //   hpm_gpu_bench --out results.json [--width 3200] [--height 2130]
-//       [--srcs 10,20] [--scene depth_step] [--images 6] [--flight 1,3]
-//       [--quick 1]
+//       [--srcs 10,20] [--scene depth_step] [--variants byte,quad]
+//       [--samplers 0]
+//
+// --variants: those whose name begins with one of the words. The results are
+// written after each step.
 #include "bench/gpu/json.h"
 #include "bench/gpu/sampler_rate.h"
 #include "bench/synthetic_views.h"
 #include "cuda/cuda_backend.h"
 #include "cuda/cuda_devices.h"
-#include "cuda/self_test.h"
 #include "src/core/sampling_pattern.h"
-#include "src/engine/estimator.h"
 
-#include <chrono>
-#include <cstdlib>
-#include <cstring>
+#include <algorithm>
+#include <cstdio>
 #include <exception>
 #include <fstream>
-#include <iostream>
-#include <mutex>
 #include <sstream>
+#include <string>
+#include <vector>
 
 namespace hpm {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-double SecondsSince(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
 struct Settings {
   std::string out = "gpu.json", scene = "depth_step";
-  int width = 3200, height = 2130, images = 6;
-  std::vector<int> srcs = {10, 20}, flight = {1, 3};
-  bool quick = false;
+  int width = 3200, height = 2130;
+  std::vector<int> srcs = {10, 20};
+  std::vector<std::string> variants = {""};
+  bool samplers = true;
 };
 
 struct Variant {
@@ -154,111 +150,6 @@ Json TimeVariant(const Variant& variant,
       .Add("within_1_percent", GoodShare(map, problem.truth));
 }
 
-// The whole method on `num_images` copies of the image, `flight` at a time.
-Json TimeMethod(const std::string& method,
-                const SyntheticProblem& problem,
-                int num_images,
-                int flight) {
-  const Camera& camera = problem.photometric.ref.camera;
-  ScheduleOptions schedule_options;
-  schedule_options.method = method;
-  schedule_options.num_levels = AutomaticLevels(
-      FindMethod(method), std::max(camera.width, camera.height));
-  const Schedule schedule = MakeSchedule(schedule_options);
-  std::vector<std::unique_ptr<CudaBackend>> backends;
-  for (int i = 0; i < flight; ++i) {
-    backends.push_back(MakeCudaBackend({}));
-    const std::string failure = SelfTestFailure(backends.back().get());
-    if (!failure.empty()) throw Error(ErrorCode::kDevice, failure);
-  }
-  std::mutex mutex;
-  int next = 0;
-  double good_share = 0, count = 0;
-  PhaseTimes phases;
-  std::map<std::string, double> kernels;
-  const auto work = [&](CudaBackend* backend) {
-    const CancelToken cancel;
-    const RunControl control = {&cancel, nullptr, false};
-    const std::map<std::string, double> before = backend->seconds();
-    PhaseTimes times;
-    for (;;) {
-      {
-        const std::lock_guard<std::mutex> lock(mutex);
-        if (next == num_images) break;
-        ++next;
-      }
-      HypothesisMap map(camera.width, camera.height);
-      double image_count = 0;
-      for (const StageSpec& stage : schedule.stages) {
-        RunStage(backend,
-                 stage.geometric ? problem.geometric : problem.photometric,
-                 schedule,
-                 stage,
-                 MethodParams(),
-                 control,
-                 &map,
-                 &times);
-        image_count += static_cast<double>(backend->num_cost_evaluations());
-      }
-      backend->ConsistentViews(map, {0.1f, 0.05f, 1.0f, 2}, true, control);
-      const std::lock_guard<std::mutex> lock(mutex);
-      good_share = GoodShare(map, problem.truth);
-      count = image_count;
-    }
-    const std::lock_guard<std::mutex> lock(mutex);
-    for (const auto& [name, value] : times) phases[name] += value;
-    for (const auto& [name, value] : backend->seconds()) {
-      const auto it = before.find(name);
-      kernels[name] += value - (it == before.end() ? 0 : it->second);
-    }
-  };
-  const Clock::time_point start = Clock::now();
-  std::vector<std::thread> threads;
-  std::vector<std::exception_ptr> failures(backends.size());
-  for (size_t i = 0; i < backends.size(); ++i) {
-    threads.emplace_back([&, i] {
-      try {
-        work(backends[i].get());
-      } catch (...) {
-        failures[i] = std::current_exception();
-      }
-    });
-  }
-  for (std::thread& thread : threads) thread.join();
-  for (const std::exception_ptr& failure : failures) {
-    if (failure != nullptr) std::rethrow_exception(failure);
-  }
-  const double seconds = SecondsSince(start) / num_images;
-  for (auto* times : {&phases, &kernels}) {
-    for (auto& [name, value] : *times) value /= num_images;
-  }
-  const double pixels = static_cast<double>(camera.width) * camera.height;
-  std::printf("| %-8s | %2d | %d | %6.2f | %6.1f | %5.1f %% |",
-              method.c_str(),
-              static_cast<int>(problem.photometric.srcs.size()),
-              flight,
-              seconds,
-              count / pixels,
-              100 * good_share);
-  for (const auto* times : {&phases, &kernels}) {
-    for (const auto& [name, value] : *times) {
-      std::printf(" %s %.3f", name.c_str(), value);
-    }
-    std::printf(" |");
-  }
-  std::printf("\n");
-  std::fflush(stdout);
-  return Json()
-      .Add("method", method.c_str())
-      .Add("srcs", static_cast<double>(problem.photometric.srcs.size()))
-      .Add("images_in_flight", flight)
-      .Add("seconds_per_image", seconds)
-      .Add("ncc_per_pixel", count / pixels)
-      .Add("within_1_percent", good_share)
-      .Add("host_seconds_per_image", AsJson(phases))
-      .Add("card_seconds_per_image", AsJson(kernels));
-}
-
 Json TimeSamplers(const ViewSet& views, const Bounds& bounds) {
   std::printf("\n| samples | 1e9/s, near | of bound | 1e9/s, spread |\n");
   std::printf("|---|---|---|---|\n");
@@ -285,39 +176,48 @@ Json TimeSamplers(const ViewSet& views, const Bounds& bounds) {
   return json;
 }
 
-std::vector<int> ReadList(const std::string& text) {
-  std::vector<int> values;
+std::vector<std::string> ReadList(const std::string& text) {
+  std::vector<std::string> words;
   std::stringstream stream(text);
-  for (std::string item; std::getline(stream, item, ',');) {
-    values.push_back(std::stoi(item));
+  for (std::string word; std::getline(stream, word, ',');) {
+    words.push_back(word);
   }
-  return values;
+  return words;
 }
 
 Settings ReadSettings(int argc, char** argv) {
   Settings settings;
   for (int i = 1; i + 1 < argc; i += 2) {
     const std::string name = argv[i], value = argv[i + 1];
-    if (name == "--out")
+    if (name == "--out") {
       settings.out = value;
-    else if (name == "--scene")
+    } else if (name == "--scene") {
       settings.scene = value;
-    else if (name == "--width")
+    } else if (name == "--width") {
       settings.width = std::stoi(value);
-    else if (name == "--height")
+    } else if (name == "--height") {
       settings.height = std::stoi(value);
-    else if (name == "--images")
-      settings.images = std::stoi(value);
-    else if (name == "--srcs")
-      settings.srcs = ReadList(value);
-    else if (name == "--flight")
-      settings.flight = ReadList(value);
-    else if (name == "--quick")
-      settings.quick = value != "0";
-    else
+    } else if (name == "--srcs") {
+      settings.srcs.clear();
+      for (const std::string& word : ReadList(value)) {
+        settings.srcs.push_back(std::stoi(word));
+      }
+    } else if (name == "--variants") {
+      settings.variants = ReadList(value);
+    } else if (name == "--samplers") {
+      settings.samplers = value != "0";
+    } else {
       throw Error(ErrorCode::kUsage, "unknown option " + name);
+    }
   }
   return settings;
+}
+
+bool IsAsked(const Settings& settings, const std::string& variant) {
+  return std::any_of(
+      settings.variants.begin(),
+      settings.variants.end(),
+      [&](const std::string& word) { return variant.rfind(word, 0) == 0; });
 }
 
 int Main(int argc, char** argv) {
@@ -350,16 +250,18 @@ int Main(int argc, char** argv) {
       .Add("scene", settings.scene.c_str())
       .Add("width", settings.width)
       .Add("height", settings.height);
+  std::vector<Json> variants;
   const auto save = [&] {
+    Json whole = result;
     std::ofstream file(settings.out);
-    file << result.Text() << "\n";
+    file << whole.Add("basic_pass", variants).Text() << "\n";
   };
-  std::vector<Json> variants, methods;
   for (const int num_srcs : settings.srcs) {
     const SyntheticProblem problem = MakeSyntheticProblem(
         settings.scene, settings.width, settings.height, num_srcs);
-    if (num_srcs == settings.srcs.front()) {
+    if (settings.samplers && num_srcs == settings.srcs.front()) {
       result.Add("samplers", TimeSamplers(problem.photometric, bounds));
+      save();
     }
     std::printf(
         "\n| basic pass, %d sources | kernels ms | half-sweep ms | "
@@ -368,23 +270,12 @@ int Main(int argc, char** argv) {
         "|---|\n",
         num_srcs);
     for (const Variant& variant : kVariants) {
-      if (settings.quick && &variant != kVariants) continue;
+      if (!IsAsked(settings, variant.name)) continue;
       Json timed = TimeVariant(variant, problem, bounds);
       variants.push_back(timed.Add("srcs", num_srcs));
-    }
-    std::printf(
-        "\n| method | sources | in flight | s/image | NCC/px | within 1 "
-        "%% | host phases, s/image | card, s/image |\n|---|---|---|---|-"
-        "--|---|---|---|\n");
-    for (const char* method : {"hpm_plus", "hpm", "nesp"}) {
-      for (const int flight : settings.flight) {
-        methods.push_back(TimeMethod(method, problem, settings.images, flight));
-      }
-      if (settings.quick) break;
+      save();
     }
   }
-  result.Add("basic_pass", variants).Add("methods", methods);
-  save();
   return 0;
 }
 
