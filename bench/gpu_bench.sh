@@ -65,7 +65,7 @@ step_profile() {
     --section SpeedOfLight --section ComputeWorkloadAnalysis --section MemoryWorkloadAnalysis --section WarpStateStats \
     --section Occupancy --section LaunchStats --section InstructionStats \
     "$bin/hpm_gpu_bench" --out "$out/profiled.json" --srcs 10 --width 1600 --height 1065 --samplers 0 \
-    --variants "${PROFILE_VARIANT:-byte pooled 8x8}" >"$out/ncu.txt" 2>&1 || return 1
+    --variants "${PROFILE_VARIANT:-byte 8x8}" >"$out/ncu.txt" 2>&1 || return 1
   grep -E 'Sweep|Duration|Registers|Throughput|Hit Rate|Achieved Occ|Theoretical Occ|Executed Ipc|No Eligible|Warp Cycles Per Issued|Local' \
     "$out/ncu.txt" | head -80
 }

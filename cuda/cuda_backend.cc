@@ -140,6 +140,7 @@ class CudaBackendImpl : public CudaBackend {
 
   void SetViews(const ViewSet& views, const MethodParams& params) override {
     UseDevice();
+    seconds_.clear();
     PhaseTimer timer(&seconds_, "upload");
     resident_ = nullptr;
     num_evaluations_ = 0;
@@ -164,7 +165,6 @@ class CudaBackendImpl : public CudaBackend {
     problem.depth_views = depth_views_.data();
     problem.src_centers = src_centers_.data();
     problem.texture = images_->texture();
-    problem.texture_scale = images_->texture_scale();
   }
 
   void Run(const Pass& pass,
@@ -233,7 +233,8 @@ class CudaBackendImpl : public CudaBackend {
   }
 
   uint64_t num_cost_evaluations() const override { return num_evaluations_; }
-  const std::map<std::string, double>& seconds() const override {
+  // "upload" and "download" are of the host's clock.
+  std::map<std::string, double> DeviceSeconds() const override {
     return seconds_;
   }
   double longest_launch() const override { return longest_launch_; }
@@ -305,7 +306,6 @@ class CudaBackendImpl : public CudaBackend {
     launch.state = state;
     launch.consistent = consistent;
     launch.num_evaluations = counter_.data();
-    launch.pooled = options_.pooled;
     for (int row = 0; row < state.height;) {
       if (control.cancel->cancelled()) {
         queue_->Abandon();

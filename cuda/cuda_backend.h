@@ -6,7 +6,6 @@
 #include "cuda/samplers.h"
 #include "src/engine/backend.h"
 
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -16,7 +15,6 @@ namespace hpm {
 struct CudaOptions {
   int device = 0;
   ImageFormat format = ImageFormat::kByte;
-  bool pooled = true;            // see warp_pool.h
   int log_tile_width = 3;        // see pixel_tiles.h
   double launch_seconds = 0.03;  // aimed at; see band_planner.h
 };
@@ -26,10 +24,6 @@ class CudaBackend : public Backend {
   // Costs of each pixel's plane in every view, [pixel * num_views + view], for
   // tests. After SetViews.
   virtual std::vector<float> Costs(const HypothesisMap& map) = 0;
-
-  // Seconds on the card since construction, by kind: "initialise", "update",
-  // "median", "filter"; "upload" and "download" are of the host's clock.
-  virtual const std::map<std::string, double>& seconds() const = 0;
 
   // Longest launch so far, seconds.
   virtual double longest_launch() const = 0;

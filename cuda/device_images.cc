@@ -7,25 +7,6 @@
 #include <cuda_runtime.h>
 
 namespace hpm {
-namespace {
-
-cudaChannelFormatDesc ChannelsOf(ImageFormat format) {
-  switch (format) {
-    case ImageFormat::kHalf:
-      return cudaCreateChannelDesc(16, 0, 0, 0, cudaChannelFormatKindFloat);
-    case ImageFormat::kFloat:
-      return cudaCreateChannelDesc(32, 0, 0, 0, cudaChannelFormatKindFloat);
-    default:
-      return cudaCreateChannelDesc(8, 0, 0, 0, cudaChannelFormatKindUnsigned);
-  }
-}
-
-size_t BytesPerElement(ImageFormat format) {
-  return static_cast<size_t>(ChannelsOf(format).x) / 8;
-}
-
-}  // namespace
-
 DeviceImages::~DeviceImages() { FreeTexture(); }
 
 const uint32_t* DeviceImages::texels(int j) const {
@@ -46,8 +27,6 @@ void DeviceImages::Upload(const ViewSet& views, cudaStream_t stream) {
   } else {
     MakeTexture(width, height, num_srcs);
   }
-  const size_t row_bytes =
-      static_cast<size_t>(width) * BytesPerElement(format_);
   for (int j = 0; j < num_srcs; ++j) {
     const GrayImage& image = *views.srcs[j].image;
     grey_.Upload(image.data, stream);
@@ -59,17 +38,11 @@ void DeviceImages::Upload(const ViewSet& views, cudaStream_t stream) {
                        stream);
       continue;
     }
-    uint8_t* layer = layer_.Reserve(row_bytes * height);
-    LaunchFillLayer(grey_.data(),
-                    image.width,
-                    image.height,
-                    width,
-                    height,
-                    format_,
-                    layer,
-                    stream);
+    uint8_t* layer = layer_.Reserve(static_cast<size_t>(width) * height);
+    LaunchFillLayer(
+        grey_.data(), image.width, image.height, width, height, layer, stream);
     cudaMemcpy3DParms copy = {};
-    copy.srcPtr = make_cudaPitchedPtr(layer, row_bytes, width, height);
+    copy.srcPtr = make_cudaPitchedPtr(layer, width, width, height);
     copy.dstArray = array_;
     copy.dstPos = make_cudaPos(0, 0, j);
     copy.extent = make_cudaExtent(width, height, 1);
@@ -94,7 +67,8 @@ void DeviceImages::MakeTexture(int width, int height, int num_layers) {
     return;
   }
   FreeTexture();
-  const cudaChannelFormatDesc channels = ChannelsOf(format_);
+  const cudaChannelFormatDesc channels =
+      cudaCreateChannelDesc(8, 0, 0, 0, cudaChannelFormatKindUnsigned);
   CheckCuda(cudaMalloc3DArray(&array_,
                               &channels,
                               make_cudaExtent(width, height, num_layers),
@@ -107,9 +81,7 @@ void DeviceImages::MakeTexture(int width, int height, int num_layers) {
   description.addressMode[0] = cudaAddressModeClamp;
   description.addressMode[1] = cudaAddressModeClamp;
   description.filterMode = cudaFilterModeLinear;
-  description.readMode = format_ == ImageFormat::kByte
-                             ? cudaReadModeNormalizedFloat
-                             : cudaReadModeElementType;
+  description.readMode = cudaReadModeNormalizedFloat;
   CheckCuda(
       cudaCreateTextureObject(&texture_, &resource, &description, nullptr),
       "making a texture");

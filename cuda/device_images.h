@@ -25,10 +25,6 @@ class DeviceImages {
   const uint32_t* texels(int j) const;
   // 0 if the format is kQuad.
   cudaTextureObject_t texture() const { return texture_; }
-  // Grey levels per unit of what the texture returns.
-  float texture_scale() const {
-    return format_ == ImageFormat::kByte ? 255.0f : 1.0f;
-  }
   // Of source view j.
   const InverseDepths& inverse_depths(int j) const {
     return inverse_depths_[j];

@@ -32,7 +32,6 @@ struct DeviceProblem {
   const DepthView* depth_views;  // for the geometric term
   const Vec3f* src_centers;      // in the reference camera frame
   unsigned long long texture;    // layered, one layer per view
-  float texture_scale;           // grey levels per unit of a fetch
 };
 
 // Of the reference image, 0..255; clamps at the border.

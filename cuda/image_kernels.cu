@@ -4,8 +4,6 @@
 #include "cuda/launch.h"
 #include "cuda/texel_image.h"
 
-#include <cuda_fp16.h>
-
 namespace hpm {
 namespace {
 
@@ -62,23 +60,17 @@ __global__ void PackTexels(const uint8_t* grey,
                        static_cast<int>(at / width));
 }
 
-template <class Element>
 __global__ void FillLayer(const uint8_t* grey,
                           int width,
                           int height,
                           int layer_width,
                           int layer_height,
-                          Element* layer) {
+                          uint8_t* layer) {
   const size_t at = static_cast<size_t>(blockIdx.x) * blockDim.x + threadIdx.x;
   if (at >= static_cast<size_t>(layer_width) * layer_height) return;
   const int col = min(static_cast<int>(at % layer_width), width - 1);
   const int row = min(static_cast<int>(at / layer_width), height - 1);
-  const uint8_t value = grey[static_cast<size_t>(row) * width + col];
-  if constexpr (sizeof(Element) == sizeof(__half)) {
-    layer[at] = __float2half(static_cast<float>(value));
-  } else {
-    layer[at] = static_cast<Element>(value);
-  }
+  layer[at] = grey[static_cast<size_t>(row) * width + col];
 }
 
 unsigned Blocks(size_t threads) {
@@ -132,22 +124,11 @@ void LaunchFillLayer(const uint8_t* grey,
                      int height,
                      int layer_width,
                      int layer_height,
-                     ImageFormat format,
-                     void* layer,
+                     uint8_t* layer,
                      cudaStream_t stream) {
-  const unsigned blocks =
-      Blocks(static_cast<size_t>(layer_width) * layer_height);
-  const auto fill = [&](auto* elements) {
-    FillLayer<<<blocks, kBlock, 0, stream>>>(
-        grey, width, height, layer_width, layer_height, elements);
-  };
-  if (format == ImageFormat::kHalf) {
-    fill(static_cast<__half*>(layer));
-  } else if (format == ImageFormat::kFloat) {
-    fill(static_cast<float*>(layer));
-  } else {
-    fill(static_cast<uint8_t*>(layer));
-  }
+  const size_t size = static_cast<size_t>(layer_width) * layer_height;
+  FillLayer<<<Blocks(size), kBlock, 0, stream>>>(
+      grey, width, height, layer_width, layer_height, layer);
   CheckCuda(cudaGetLastError(), "making a texture");
 }
 

@@ -17,7 +17,6 @@ struct SweepLaunch {
   uint32_t* consistent;
   Band band;
   unsigned long long* num_evaluations;  // added to
-  bool pooled;  // see warp_pool.h; else each lane works alone
 };
 
 void LaunchTextureSweep(const SweepLaunch& launch, cudaStream_t stream);
@@ -48,15 +47,13 @@ void LaunchPackTexels(const uint8_t* grey,
                       uint32_t* texels,
                       cudaStream_t stream);
 
-// The image at the size of the layers, the border repeated, in the elements of
-// `format` (not kQuad).
+// The image at the size of the layers, the border repeated.
 void LaunchFillLayer(const uint8_t* grey,
                      int width,
                      int height,
                      int layer_width,
                      int layer_height,
-                     ImageFormat format,
-                     void* layer,
+                     uint8_t* layer,
                      cudaStream_t stream);
 
 }  // namespace hpm

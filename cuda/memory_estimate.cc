@@ -26,16 +26,7 @@ uint64_t RoundUp(uint64_t value, uint64_t grain) {
 }
 
 uint64_t BytesPerTexel(ImageFormat format) {
-  switch (format) {
-    case ImageFormat::kByte:
-      return 1;
-    case ImageFormat::kHalf:
-      return 2;
-    case ImageFormat::kFloat:
-    case ImageFormat::kQuad:
-      break;
-  }
-  return 4;
+  return format == ImageFormat::kQuad ? 4 : 1;
 }
 
 }  // namespace

@@ -9,10 +9,8 @@ namespace hpm {
 
 // The formats in which the card holds the source images.
 enum class ImageFormat {
-  kByte,   // 8-bit texture, the card interpolates with 8-bit fractions
-  kHalf,   // the same on 16-bit floats
-  kFloat,  // the same on 32-bit floats
-  kQuad,   // 32-bit words of four neighbours in plain memory, float fractions
+  kByte,  // 8-bit texture, the card interpolates with 8-bit fractions
+  kQuad,  // 32-bit words of four neighbours in plain memory, float fractions
 };
 
 // Exact bilinear interpolation in arithmetic units.
@@ -40,7 +38,7 @@ struct QuadSampler {
 // Guide states it ("Linear Filtering"): fractions have eight bits.
 struct TextureSampler {
   HPM_HD_MEMBER explicit TextureSampler(const DeviceProblem& problem)
-      : texture(problem.texture), scale(problem.texture_scale) {}
+      : texture(problem.texture) {}
 
   HPM_HD_MEMBER float operator()(const ViewGeometry& view,
                                  int layer,
@@ -48,7 +46,7 @@ struct TextureSampler {
                                  float v) const {
 #if defined(__CUDA_ARCH__)
     (void)view;
-    return scale * tex2DLayered<float>(texture, u + 0.5f, v + 0.5f, layer);
+    return 255 * tex2DLayered<float>(texture, u + 0.5f, v + 0.5f, layer);
 #else
     (void)layer;
     float fu, fv;
@@ -66,7 +64,6 @@ struct TextureSampler {
   }
 
   unsigned long long texture;
-  float scale;
 };
 
 }  // namespace hpm

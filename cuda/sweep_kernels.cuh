@@ -4,39 +4,23 @@
 #pragma once
 
 #include "cuda/check.h"
-#include "cuda/direct_cost.h"
+#include "cuda/lane_cost.h"
 #include "cuda/launch.h"
 #include "cuda/pixel_kernels.h"
-#include "cuda/warp_pool.h"
 
 namespace hpm {
 
-constexpr int kWarpsPerBlock = 2;
+#if !defined(HPM_WARPS_PER_BLOCK)
+#define HPM_WARPS_PER_BLOCK 2
+#endif
+constexpr int kWarpsPerBlock = HPM_WARPS_PER_BLOCK;
 // At most 128 registers per thread. The benchmark compares other numbers.
 #if !defined(HPM_BLOCKS_PER_PROCESSOR)
-#define HPM_BLOCKS_PER_PROCESSOR 8
+#define HPM_BLOCKS_PER_PROCESSOR 6
 #endif
 constexpr int kBlocksPerProcessor = HPM_BLOCKS_PER_PROCESSOR;
 
-struct DeviceWarp {
-  int lane_number;
-
-  HPM_HD_MEMBER int lane() const { return lane_number; }
-  HPM_HD_MEMBER uint32_t Ballot(bool vote) const {
-#if defined(__CUDA_ARCH__)
-    return __ballot_sync(0xFFFFFFFFu, vote);
-#else
-    return vote;
-#endif
-  }
-  HPM_HD_MEMBER void Sync() const {
-#if defined(__CUDA_ARCH__)
-    __syncwarp();
-#endif
-  }
-};
-
-// Windows of a warp whose lanes work alone.
+// The windows of the pixels of a warp.
 struct WarpWindows {
   WindowSample samples[kPatchSize][kWarpSize];
 };
@@ -55,7 +39,7 @@ __device__ inline void CountEvaluations(int evaluations,
 template <SweepKind kKind, class Sampler>
 __global__ void __launch_bounds__(kWarpsPerBlock* kWarpSize,
                                   kBlocksPerProcessor)
-    DirectSweep(const __grid_constant__ DeviceProblem problem,
+    SweepKernel(const __grid_constant__ DeviceProblem problem,
                 const __grid_constant__ Sweep sweep,
                 const PixelState state,
                 uint32_t* consistent,
@@ -74,43 +58,12 @@ __global__ void __launch_bounds__(kWarpsPerBlock* kWarpSize,
     StoreWindow(patch, samples, kWarpSize);
     const Window window = {
         samples, kWarpSize, patch.center, patch.mean, patch.variance};
-    const DirectCost<Sampler> cost(problem, window, pixel.col, pixel.row);
+    const LaneCost<Sampler> cost(problem, window, pixel.col, pixel.row);
     VisitPixel<kKind>(
         problem, sweep, state, consistent, cost, pixel.col, pixel.row);
     evaluations = cost.num_evaluations();
   }
   __syncwarp();
-  CountEvaluations(evaluations, lane, num_evaluations);
-}
-
-template <SweepKind kKind, class Sampler>
-__global__ void __launch_bounds__(kWarpsPerBlock* kWarpSize,
-                                  kBlocksPerProcessor)
-    PooledSweep(const __grid_constant__ DeviceProblem problem,
-                const __grid_constant__ Sweep sweep,
-                const PixelState state,
-                uint32_t* consistent,
-                const Band band,
-                unsigned long long* num_evaluations) {
-  __shared__ WarpPool pools[kWarpsPerBlock];
-  const DeviceWarp machine = {static_cast<int>(threadIdx.x % kWarpSize)};
-  const int lane = machine.lane();
-  WarpPool* pool = &pools[threadIdx.x / kWarpSize];
-  const int64_t warp = static_cast<int64_t>(blockIdx.x) * kWarpsPerBlock +
-                       threadIdx.x / kWarpSize;
-  if (warp >= band.num_warps()) return;
-  const Pixel pixel = PixelOf(band, warp, lane);
-  int evaluations = 0;
-  if (pixel.inside) {
-    pool->SetPixel(
-        lane, RefPatchAt(problem, pixel.col, pixel.row), pixel.col, pixel.row);
-    const PooledCost<Sampler, DeviceWarp> cost(
-        problem, machine, pool, pixel.col, pixel.row);
-    VisitPixel<kKind>(
-        problem, sweep, state, consistent, cost, pixel.col, pixel.row);
-    evaluations = cost.num_evaluations();
-  }
-  ServeOthers<Sampler>(problem, machine, pool);
   CountEvaluations(evaluations, lane, num_evaluations);
 }
 
@@ -134,7 +87,7 @@ __global__ void __launch_bounds__(kWarpsPerBlock* kWarpSize)
   StoreWindow(patch, samples, kWarpSize);
   const Window window = {
       samples, kWarpSize, patch.center, patch.mean, patch.variance};
-  const DirectCost<Sampler> cost(problem, window, pixel.col, pixel.row);
+  const LaneCost<Sampler> cost(problem, window, pixel.col, pixel.row);
   const size_t at = static_cast<size_t>(pixel.row) * state.width + pixel.col;
   const Plane plane = state.planes[at];
   for (int view = 0; view < problem.params.num_views; ++view) {
@@ -160,17 +113,13 @@ void LaunchSweepWith(const SweepLaunch& launch, cudaStream_t stream) {
   };
   switch (launch.sweep.kind) {
     case SweepKind::kInitialize:
-      start(&DirectSweep<SweepKind::kInitialize, Sampler>);
+      start(&SweepKernel<SweepKind::kInitialize, Sampler>);
       break;
     case SweepKind::kUpdate:
-      if (launch.pooled) {
-        start(&PooledSweep<SweepKind::kUpdate, Sampler>);
-      } else {
-        start(&DirectSweep<SweepKind::kUpdate, Sampler>);
-      }
+      start(&SweepKernel<SweepKind::kUpdate, Sampler>);
       break;
     case SweepKind::kConsistency:
-      start(&DirectSweep<SweepKind::kConsistency, Sampler>);
+      start(&SweepKernel<SweepKind::kConsistency, Sampler>);
       break;
     case SweepKind::kFollow:
       LaunchFollow(launch, stream);

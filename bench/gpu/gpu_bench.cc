@@ -36,27 +36,21 @@ struct Settings {
 struct Variant {
   const char* name;
   ImageFormat format;
-  bool pooled;
   int log_tile_width;
 };
 
 const Variant kVariants[] = {
-    {"byte pooled 8x8", ImageFormat::kByte, true, 3},
-    {"byte direct 8x8", ImageFormat::kByte, false, 3},
-    {"byte pooled 16x4", ImageFormat::kByte, true, 4},
-    {"byte pooled 64x1", ImageFormat::kByte, true, 6},
-    {"half pooled 8x8", ImageFormat::kHalf, true, 3},
-    {"float pooled 8x8", ImageFormat::kFloat, true, 3},
-    {"quad pooled 8x8", ImageFormat::kQuad, true, 3},
-    {"quad direct 8x8", ImageFormat::kQuad, false, 3},
-    {"quad pooled 32x2", ImageFormat::kQuad, true, 5},
-    {"quad pooled 64x1", ImageFormat::kQuad, true, 6},
+    {"byte 8x8", ImageFormat::kByte, 3},
+    {"byte 16x4", ImageFormat::kByte, 4},
+    {"byte 32x2", ImageFormat::kByte, 5},
+    {"byte 64x1", ImageFormat::kByte, 6},
+    {"quad 8x8", ImageFormat::kQuad, 3},
+    {"quad 64x1", ImageFormat::kQuad, 6},
 };
 
 CudaOptions OptionsOf(const Variant& variant) {
   CudaOptions options;
   options.format = variant.format;
-  options.pooled = variant.pooled;
   options.log_tile_width = variant.log_tile_width;
   return options;
 }
@@ -113,11 +107,11 @@ Json TimeVariant(const Variant& variant,
   const Pass pass = {PassKind::kBasic, StartFrom::kRandom, 3, 0};
   const SamplingPattern pattern = MakeSamplingPattern(true, true);
   backend->Run(pass, pattern, &map, {&cancel, nullptr, false});  // warm up
-  const std::map<std::string, double> before = backend->seconds();
+  const std::map<std::string, double> before = backend->DeviceSeconds();
   const uint64_t count_before = backend->num_cost_evaluations();
   map = HypothesisMap(camera.width, camera.height);
   backend->Run(pass, pattern, &map, {&cancel, nullptr, false});
-  std::map<std::string, double> seconds = backend->seconds();
+  std::map<std::string, double> seconds = backend->DeviceSeconds();
   for (const auto& [name, value] : before) seconds[name] -= value;
   const double count =
       static_cast<double>(backend->num_cost_evaluations() - count_before);
@@ -155,10 +149,7 @@ Json TimeSamplers(const ViewSet& views, const Bounds& bounds) {
   std::printf("|---|---|---|---|\n");
   Json json;
   const std::pair<const char*, ImageFormat> formats[] = {
-      {"byte", ImageFormat::kByte},
-      {"half", ImageFormat::kHalf},
-      {"float", ImageFormat::kFloat},
-      {"quad", ImageFormat::kQuad}};
+      {"byte", ImageFormat::kByte}, {"quad", ImageFormat::kQuad}};
   for (const auto& [name, format] : formats) {
     for (const int log_tile_width : {3, 6}) {
       const double near = MeasureSampleRate(views, format, log_tile_width, 2);

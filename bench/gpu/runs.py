@@ -40,15 +40,18 @@ def unpack(scene, folder):
 
 
 def summed_phases(record):
-    """Seconds per image by stage and phase, and costs per pixel by stage."""
-    seconds, costs = collections.Counter(), collections.Counter()
+    """Seconds per image by stage and phase, of the host and of the card, and costs per
+    pixel by stage."""
+    seconds, card, costs = (collections.Counter() for _ in range(3))
     images = record["images"].values()
     for stages in images:
         for stage, figures in stages.items():
             costs[stage] += figures["cost_evaluations_per_pixel"] / len(images)
-            for phase, value in figures["seconds"].items():
-                seconds[f"{stage}/{phase}"] += value / len(images)
-    return {name: round(value, 4) for name, value in seconds.items()}, dict(costs)
+            for sums, times in (seconds, figures["seconds"]), (card, figures.get("device_seconds", {})):
+                for phase, value in times.items():
+                    sums[f"{stage}/{phase}"] += value / len(images)
+    rounded = [{name: round(value, 4) for name, value in sums.items()} for sums in (seconds, card, costs)]
+    return dict(zip(("host_seconds_per_image", "card_seconds_per_image", "costs_per_pixel"), rounded))
 
 
 def run(carry, scene, name, arguments):
@@ -66,10 +69,8 @@ def run(carry, scene, name, arguments):
         if done.returncode != 0:
             return {**result, "log": done.stdout[-3000:]}
         record = json.loads((folder / "stereo/hpm_mvs/run.json").read_text())
-        phases, costs = summed_phases(record)
         result.update(images=len(record["images"]), seconds_per_image=round(seconds / len(record["images"]), 3),
-                      backend=record["backend"], host_seconds_per_image=phases, costs_per_pixel=costs,
-                      log=done.stdout[-1500:])
+                      backend=record["backend"], log=done.stdout[-1500:], **summed_phases(record))
         if (folder / "gt").exists():
             subprocess.run([carry / "bin/eval_depth", folder, "--json", folder / "depth.json"],
                            check=True, stdout=subprocess.DEVNULL)
@@ -100,7 +101,8 @@ def main():
             results.append(result)
             options.out.write_text(json.dumps(results, indent=1))
         print(f"{result['scene']}: {result['run']}: exit {result['exit']}, {result['seconds']} s,"
-              f" {result.get('seconds_per_image')} s/image", flush=True)
+              f" {result.get('seconds_per_image')} s/image, of the card"
+              f" {sum(result.get('card_seconds_per_image', {}).values()):.3f}", flush=True)
         if result["exit"] != 0:
             print(result["log"], flush=True)
         elif "depth" in result:

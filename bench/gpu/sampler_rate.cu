@@ -59,7 +59,6 @@ double MeasureSampleRate(const ViewSet& views,
   geometry.Upload(tables.views, nullptr);
   tables.problem.views = geometry.data();
   tables.problem.texture = images.texture();
-  tables.problem.texture_scale = images.texture_scale();
   const Camera& ref = views.ref.camera;
   const Band band = {ref.width, ref.height, 0, ref.height, 0, log_tile_width};
   const unsigned blocks = static_cast<unsigned>(

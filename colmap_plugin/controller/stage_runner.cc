@@ -38,10 +38,14 @@ uint64_t RandomKey(int seed, const std::string& image_name) {
 }  // namespace
 
 nlohmann::json ToJson(const StageResult& result) {
-  return {{"valid_pixel_share", result.valid_pixel_share},
-          {"filter_losses", ToJson(result.losses)},
-          {"cost_evaluations_per_pixel", result.cost_evaluations_per_pixel},
-          {"seconds", result.seconds}};
+  nlohmann::json json = {
+      {"valid_pixel_share", result.valid_pixel_share},
+      {"filter_losses", ToJson(result.losses)},
+      {"cost_evaluations_per_pixel", result.cost_evaluations_per_pixel},
+      {"seconds", result.seconds}};
+  if (!result.device_seconds.empty())
+    json["device_seconds"] = result.device_seconds;
+  return json;
 }
 
 StageRunner::StageRunner(const Workspace& workspace,
@@ -185,6 +189,7 @@ void StageRunner::Publish(int stage,
     result->cost_evaluations_per_pixel =
         static_cast<double>(backend_->num_cost_evaluations()) /
         static_cast<double>(map.planes.size());
+    result->device_seconds = backend_->DeviceSeconds();
   }
   // Before the maps are made here and the next problem's inputs are read.
   backend_->ForgetViews();

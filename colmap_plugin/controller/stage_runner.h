@@ -16,8 +16,9 @@ namespace hpm {
 struct StageResult {
   double valid_pixel_share = 0;
   double cost_evaluations_per_pixel = 0;
-  FilterLosses losses;  // of a final stage
-  PhaseTimes seconds;   // wall, per phase
+  FilterLosses losses;        // of a final stage
+  PhaseTimes seconds;         // wall, per phase
+  PhaseTimes device_seconds;  // of a card, per kind of work
 };
 
 nlohmann::json ToJson(const StageResult& result);

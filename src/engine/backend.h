@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -58,6 +59,10 @@ class Backend {
 
   // Matching costs computed since the last SetViews.
   virtual uint64_t num_cost_evaluations() const = 0;
+
+  // Seconds that a device of its own has worked since the last SetViews, by
+  // kind of work; none for the CPU.
+  virtual std::map<std::string, double> DeviceSeconds() const { return {}; }
 };
 
 }  // namespace hpm

@@ -1,13 +1,10 @@
 #include "tests/cuda/emulated_backend.h"
 
-#include "cuda/direct_cost.h"
+#include "cuda/lane_cost.h"
 #include "cuda/pixel_tiles.h"
 #include "cuda/texel_image.h"
-#include "cuda/warp_pool.h"
-#include "tests/cuda/host_warp.h"
 
 #include <algorithm>
-#include <memory>
 
 namespace hpm {
 namespace {
@@ -31,7 +28,7 @@ void Visit(const Launch& launch, const Cost& cost, const Pixel& pixel) {
                     pixel.row);
 }
 
-// Calls visit(pixel) for all pixels of the band, as DirectSweep would.
+// Calls visit(pixel) for all pixels of the band, as the kernels would.
 template <class VisitOne>
 void ForEachPixel(const Band& band, const VisitOne& visit) {
   for (int64_t warp = 0; warp < band.num_warps(); ++warp) {
@@ -55,7 +52,7 @@ uint64_t RunCore(const Launch& launch) {
 }
 
 template <SweepKind kKind, class Sampler>
-uint64_t RunDirect(const Launch& launch) {
+uint64_t RunOnLanes(const Launch& launch) {
   uint64_t evaluations = 0;
   ForEachPixel(launch.band, [&](const Pixel& pixel) {
     WindowSample samples[kPatchSize];
@@ -63,35 +60,10 @@ uint64_t RunDirect(const Launch& launch) {
     StoreWindow(patch, samples, 1);
     const Window window = {
         samples, 1, patch.center, patch.mean, patch.variance};
-    const DirectCost<Sampler> cost(
-        launch.problem, window, pixel.col, pixel.row);
+    const LaneCost<Sampler> cost(launch.problem, window, pixel.col, pixel.row);
     Visit<kKind>(launch, cost, pixel);
     evaluations += cost.num_evaluations();
   });
-  return evaluations;
-}
-
-template <SweepKind kKind, class Sampler>
-uint64_t RunPooled(const Launch& launch) {
-  uint64_t evaluations = 0;
-  const auto pool = std::make_unique<WarpPool>();
-  const auto machine = std::make_unique<HostWarp>();
-  for (int64_t number = 0; number < launch.band.num_warps(); ++number) {
-    machine->Run([&](const HostWarp::Lane& lane) {
-      const Pixel pixel = PixelOf(launch.band, number, lane.lane());
-      if (pixel.inside) {
-        pool->SetPixel(lane.lane(),
-                       RefPatchAt(launch.problem, pixel.col, pixel.row),
-                       pixel.col,
-                       pixel.row);
-        const PooledCost<Sampler, HostWarp::Lane> cost(
-            launch.problem, lane, pool.get(), pixel.col, pixel.row);
-        Visit<kKind>(launch, cost, pixel);
-        evaluations += cost.num_evaluations();
-      }
-      ServeOthers<Sampler>(launch.problem, lane, pool.get());
-    });
-  }
   return evaluations;
 }
 
@@ -100,19 +72,12 @@ uint64_t RunWith(EmulatedCost cost, const Launch& launch) {
   switch (cost) {
     case EmulatedCost::kCore:
       return RunCore<kKind>(launch);
-    case EmulatedCost::kDirectQuad:
-      return RunDirect<kKind, QuadSampler>(launch);
-    case EmulatedCost::kDirectTexture:
-      return RunDirect<kKind, TextureSampler>(launch);
-    case EmulatedCost::kPooledQuad:
+    case EmulatedCost::kQuad:
+      return RunOnLanes<kKind, QuadSampler>(launch);
+    case EmulatedCost::kTexture:
       break;
   }
-  // As on the card, only the updates are pooled.
-  if constexpr (kKind == SweepKind::kUpdate) {
-    return RunPooled<kKind, QuadSampler>(launch);
-  } else {
-    return RunDirect<kKind, QuadSampler>(launch);
-  }
+  return RunOnLanes<kKind, TextureSampler>(launch);
 }
 
 }  // namespace

@@ -12,10 +12,9 @@
 namespace hpm {
 
 enum class EmulatedCost {
-  kCore,           // the matching cost of src/core
-  kDirectQuad,     // the card's, exact interpolation
-  kDirectTexture,  // the card's, interpolation of the texture unit
-  kPooledQuad,     // warps that compute together
+  kCore,     // the matching cost of src/core
+  kQuad,     // the card's, exact interpolation
+  kTexture,  // the card's, interpolation of the texture unit
 };
 
 struct EmulationOptions {

@@ -205,15 +205,6 @@ TEST_F(EmulationTest, AMethodWithPriorsGivesTheBytesOfTheCpuBackend) {
   EXPECT_TRUE(SameMaps(maps[0], maps[1]));
 }
 
-// The warp that computes together gives what its lanes compute alone.
-TEST_F(EmulationTest, PooledWarpsGiveTheBytesOfLanesAlone) {
-  const ViewSet small = MakeViews("depth_step", 29, 19);
-  EmulatedBackend alone({EmulatedCost::kDirectQuad, 3, 16});
-  EmulatedBackend together({EmulatedCost::kPooledQuad, 3, 16});
-  ExpectSameBytes(RunAll(&together, small, nesp_),
-                  RunAll(&alone, small, nesp_));
-}
-
 // Shares of pixels whose depth differs by more than 1 %, beside those where
 // both maps match badly.
 double DifferingShare(const HypothesisMap& a,
@@ -242,12 +233,11 @@ class EveryCost : public EmulationTest,
                   public testing::WithParamInterface<EmulatedCost> {};
 INSTANTIATE_TEST_SUITE_P(Emulation,
                          EveryCost,
-                         testing::Values(EmulatedCost::kDirectQuad,
-                                         EmulatedCost::kDirectTexture),
+                         testing::Values(EmulatedCost::kQuad,
+                                         EmulatedCost::kTexture),
                          [](const auto& test) {
-                           return test.param == EmulatedCost::kDirectQuad
-                                      ? "Quad"
-                                      : "Texture";
+                           return test.param == EmulatedCost::kQuad ? "Quad"
+                                                                    : "Texture";
                          });
 
 TEST_P(EveryCost, MapsAreThoseOfTheCpuButForTies) {

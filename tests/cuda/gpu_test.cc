@@ -1,8 +1,8 @@
 // Tests that need a card; without one each is skipped and says so.
 #include "cuda/cuda_backend.h"
 #include "cuda/cuda_devices.h"
-#include "cuda/direct_cost.h"
 #include "cuda/gpu_error.h"
+#include "cuda/lane_cost.h"
 #include "cuda/self_test.h"
 #include "src/core/sampling_pattern.h"
 #include "src/cpu/cpu_backend.h"
@@ -18,12 +18,6 @@
 namespace hpm {
 namespace {
 
-struct Variant {
-  const char* name;
-  ImageFormat format;
-  bool pooled;
-};
-
 class GpuTest : public testing::Test {
  protected:
   void SetUp() override {
@@ -33,11 +27,10 @@ class GpuTest : public testing::Test {
     }
   }
 
-  static std::unique_ptr<CudaBackend> Make(const Variant& variant,
+  static std::unique_ptr<CudaBackend> Make(ImageFormat format,
                                            double launch_seconds = 0.03) {
     CudaOptions options;
-    options.format = variant.format;
-    options.pooled = variant.pooled;
+    options.format = format;
     options.launch_seconds = launch_seconds;
     return MakeCudaBackend(options);
   }
@@ -117,24 +110,27 @@ class GpuTest : public testing::Test {
   RunControl control_ = {&cancel_, nullptr, false};
 };
 
-class EveryVariant : public GpuTest,
-                     public testing::WithParamInterface<Variant> {};
-INSTANTIATE_TEST_SUITE_P(
-    Gpu,
-    EveryVariant,
-    testing::Values(Variant{"BytePooled", ImageFormat::kByte, true},
-                    Variant{"ByteDirect", ImageFormat::kByte, false},
-                    Variant{"HalfPooled", ImageFormat::kHalf, true},
-                    Variant{"FloatPooled", ImageFormat::kFloat, true},
-                    Variant{"QuadPooled", ImageFormat::kQuad, true},
-                    Variant{"QuadDirect", ImageFormat::kQuad, false}),
-    [](const auto& test) { return test.param.name; });
+class EveryFormat : public GpuTest,
+                    public testing::WithParamInterface<ImageFormat> {
+ protected:
+  static const char* Name() {
+    return GetParam() == ImageFormat::kQuad ? "quad" : "byte";
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Gpu,
+                         EveryFormat,
+                         testing::Values(ImageFormat::kByte,
+                                         ImageFormat::kQuad),
+                         [](const auto& test) {
+                           return test.param == ImageFormat::kQuad ? "Quad"
+                                                                   : "Byte";
+                         });
 
-TEST_P(EveryVariant, PassesTheSelfTest) {
+TEST_P(EveryFormat, PassesTheSelfTest) {
   EXPECT_EQ(SelfTestFailure(Make(GetParam()).get()), "");
 }
 
-TEST_P(EveryVariant, CostsAreThoseOfTheHost) {
+TEST_P(EveryFormat, CostsAreThoseOfTheHost) {
   const ViewSet views = MakeViews("sphere", 96, 72);
   const auto gpu = Make(GetParam());
   EmulatedBackend host({EmulatedCost::kCore, 3, 16});
@@ -170,17 +166,17 @@ TEST_P(EveryVariant, CostsAreThoseOfTheHost) {
   }
   const double mean = sum / (96 * 72 * num_views);
   std::printf("%s: cost difference mean %.6f, largest %.4f, visibility %d\n",
-              GetParam().name,
+              Name(),
               mean,
               static_cast<double>(largest),
               num_off);
-  const bool exact = GetParam().format == ImageFormat::kQuad;
+  const bool exact = GetParam() == ImageFormat::kQuad;
   EXPECT_LT(largest, exact ? 2e-3f : 0.2f);
   EXPECT_LT(mean, exact ? 1e-4 : 2e-3);
   EXPECT_LE(num_off, 96 * 72 * num_views / 2000);
 }
 
-TEST_P(EveryVariant, MapsAreThoseOfTheCpuButForTies) {
+TEST_P(EveryFormat, MapsAreThoseOfTheCpuButForTies) {
   const auto gpu = Make(GetParam());
   const auto cpu = MakeCpuBackend("scalar", 0);
   for (const char* scene : {"sphere", "depth_step", "tilted_plane"}) {
@@ -192,7 +188,7 @@ TEST_P(EveryVariant, MapsAreThoseOfTheCpuButForTies) {
         DifferingShare(a.geometric, b.geometric, views.ref.camera);
     const double half = DifferingShare(a.half, b.half, views.ref.camera);
     std::printf("%s %s: basic %.4f, geometric %.4f, half %.4f\n",
-                GetParam().name,
+                Name(),
                 scene,
                 basic,
                 geometric,
@@ -203,46 +199,38 @@ TEST_P(EveryVariant, MapsAreThoseOfTheCpuButForTies) {
   }
 }
 
-TEST_P(EveryVariant, TwoRunsGiveTheSameBytesAlsoInOtherBands) {
+TEST_P(EveryFormat, TwoRunsGiveTheSameBytesAlsoInOtherBands) {
   const ViewSet views = MakeViews("depth_step", 200, 150);
   const Result once = RunAll(Make(GetParam()).get(), views);
   ExpectSameBytes(RunAll(Make(GetParam()).get(), views), once);
   ExpectSameBytes(RunAll(Make(GetParam(), 1e-5).get(), views), once);
 }
 
-TEST_F(GpuTest, PooledAndDirectGiveTheSameBytes) {
-  const ViewSet views = MakeViews("sphere", 200, 150);
-  for (const ImageFormat format : {ImageFormat::kByte, ImageFormat::kQuad}) {
-    ExpectSameBytes(RunAll(Make({"", format, true}).get(), views),
-                    RunAll(Make({"", format, false}).get(), views));
-  }
-}
-
 TEST_F(GpuTest, SeveralStreamsDoNotDisturbEachOther) {
   const ViewSet views = MakeViews("sphere", 160, 120);
-  const Variant variant = {"", ImageFormat::kByte, true};
-  const Result expected = RunAll(Make(variant).get(), views);
+  const Result expected = RunAll(Make(ImageFormat::kByte).get(), views);
   std::vector<Result> results(4);
   std::vector<std::thread> threads;
   for (Result& result : results) {
-    threads.emplace_back([&] { result = RunAll(Make(variant).get(), views); });
+    threads.emplace_back(
+        [&] { result = RunAll(Make(ImageFormat::kByte).get(), views); });
   }
   for (std::thread& thread : threads) thread.join();
   for (const Result& result : results) ExpectSameBytes(result, expected);
 }
 
 TEST_F(GpuTest, OneBackendTakesProblemsOfAllSizes) {
-  const auto reused = Make({"", ImageFormat::kByte, true});
+  const auto reused = Make(ImageFormat::kByte);
   for (const auto& [width, height] :
        {std::pair(160, 120), std::pair(61, 43), std::pair(200, 150)}) {
     const ViewSet views = MakeViews("tilted_plane", width, height);
     ExpectSameBytes(RunAll(reused.get(), views),
-                    RunAll(Make({"", ImageFormat::kByte, true}).get(), views));
+                    RunAll(Make(ImageFormat::kByte).get(), views));
   }
 }
 
 TEST_F(GpuTest, StopsWhenCancelled) {
-  const auto gpu = Make({"", ImageFormat::kByte, true});
+  const auto gpu = Make(ImageFormat::kByte);
   const ViewSet views = MakeViews("sphere", 160, 120);
   gpu->SetViews(views, MethodParams());
   HypothesisMap map(160, 120);
@@ -267,7 +255,7 @@ TEST_F(GpuTest, StopsWhenCancelled) {
 
 TEST_F(GpuTest, TooLargeAProblemIsAnErrorThatLeavesTheCardUsable) {
   const ViewSet views = MakeViews("sphere", 160, 120);
-  const auto gpu = Make({"", ImageFormat::kByte, true});
+  const auto gpu = Make(ImageFormat::kByte);
   gpu->SetViews(views, MethodParams());
   // Wider than a texture can be.
   ViewSet wide = views;
@@ -312,7 +300,7 @@ TEST_F(GpuTest, LargeImagesAreAddressedToTheirEnd) {
   views.depth_max = 2;
   views.random_key = 1;
   for (const ImageFormat format : {ImageFormat::kByte, ImageFormat::kQuad}) {
-    const auto gpu = Make({"", format, true});
+    const auto gpu = Make(format);
     gpu->SetViews(views, MethodParams());
     HypothesisMap map(width, height);
     gpu->Run({PassKind::kBasic, StartFrom::kRandom, 1, 0, 0, true},

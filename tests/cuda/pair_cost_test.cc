@@ -1,5 +1,5 @@
 // The card's form of the matching cost against the one of src/core.
-#include "cuda/direct_cost.h"
+#include "cuda/lane_cost.h"
 #include "cuda/texel_image.h"
 #include "tests/cpu/scene_views.h"
 #include "tests/cuda/emulated_backend.h"
@@ -37,7 +37,7 @@ Difference Compare(const std::string& scene) {
       StoreWindow(patch, samples, 1);
       const Window window = {
           samples, 1, patch.center, patch.mean, patch.variance};
-      const DirectCost<Sampler> cost(problem, window, col, row);
+      const LaneCost<Sampler> cost(problem, window, col, row);
       const CoreCost core(problem, patch, col, row);
       for (int i = 0; i < 5; ++i) {
         const Plane plane = SomeHypothesis(rendered[0], col, row, &random);

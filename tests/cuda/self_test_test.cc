@@ -15,7 +15,7 @@ namespace {
 
 TEST(SelfTest, PassesOnBackendsThatWork) {
   EXPECT_EQ(SelfTestFailure(MakeCpuBackend("auto", 2).get()), "");
-  EmulatedBackend texture({EmulatedCost::kDirectTexture, 3, 16});
+  EmulatedBackend texture({EmulatedCost::kTexture, 3, 16});
   EXPECT_EQ(SelfTestFailure(&texture), "");
 }
 
@@ -24,7 +24,7 @@ class BrokenBackend : public EmulatedBackend {
  public:
   using Break = void (*)(HypothesisMap*);
   explicit BrokenBackend(Break how)
-      : EmulatedBackend({EmulatedCost::kDirectQuad, 3, 16}), break_(how) {}
+      : EmulatedBackend({EmulatedCost::kQuad, 3, 16}), break_(how) {}
   void Run(const Pass& pass,
            const SamplingPattern& pattern,
            HypothesisMap* map,

@@ -9,32 +9,40 @@ namespace hpm {
 
 // With the card's form of the matching cost.
 template <class Sampler>
-class DirectCost : public PixelCost {
+class LaneCost : public PixelCost {
  public:
-  HPM_HD_MEMBER DirectCost(const DeviceProblem& problem,
-                           const Window& window,
-                           int col,
-                           int row)
+  HPM_HD_MEMBER LaneCost(const DeviceProblem& problem,
+                         const Window& window,
+                         int col,
+                         int row)
       : PixelCost(problem, col, row), window_(window) {}
 
+#if defined(HPM_NO_INLINE) && defined(__CUDACC__)
+  __noinline__
+#endif
   HPM_HD_MEMBER void Photometric(const Plane* planes,
                                  int num_planes,
                                  const uint8_t* views,
                                  int num_views,
                                  float* costs) const {
+    // One loop over all pairs: lanes of a warp differ in both numbers, and two
+    // loops would each wait for the longest.
     const Sampler sampler(problem_);
-    for (int i = 0; i < num_planes; ++i) {
-      const PlaneSlope slope = SlopeOf(problem_.params.ref, planes[i]);
-      for (int k = 0; k < num_views; ++k) {
-        costs[i * num_views + k] = PairCost(problem_.shape,
-                                            window_,
-                                            problem_.views[views[k]],
-                                            views[k],
-                                            slope,
-                                            static_cast<float>(col_),
-                                            static_cast<float>(row_),
-                                            sampler);
-      }
+    const int num_pairs = num_planes * num_views;
+    PlaneSlope slope = {};
+    for (int pair = 0, i = 0, k = 0; pair < num_pairs; ++pair) {
+      if (k == 0) slope = SlopeOf(problem_.params.ref, planes[i]);
+      costs[pair] = PairCost(problem_.shape,
+                             window_,
+                             problem_.views[views[k]],
+                             views[k],
+                             slope,
+                             static_cast<float>(col_),
+                             static_cast<float>(row_),
+                             sampler);
+      if (++k < num_views) continue;
+      k = 0;
+      ++i;
     }
     num_evaluations_ += num_planes * num_views;
   }
