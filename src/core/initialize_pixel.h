@@ -80,6 +80,39 @@ HPM_HD uint32_t ViewsToAsk(const VisitParams& params,
   return views != 0 ? views : all;
 }
 
+// BestViewsCost() of the plane in the `asked` ones of the views.
+template <class Cost>
+HPM_HD float CostFromViews(const Cost& cost,
+                           const Plane& plane,
+                           uint32_t asked,
+                           int num_all_views,
+                           uint32_t* mask) {
+  uint8_t views[kMaxViews] = {};
+  int num_views = 0;
+  for (int j = 0; j < num_all_views; ++j) {
+    if (asked >> j & 1) views[num_views++] = static_cast<uint8_t>(j);
+  }
+  float costs[kMaxViews];
+  cost.Photometric(&plane, 1, views, num_views, costs);
+  return BestViewsCost(costs, views, num_views, mask);
+}
+
+// A plane at one pixel.
+struct PixelPlane {
+  int col, row;
+  Plane plane;
+};
+
+// What StartFrom::kScore computes; `cost` is that of the plane's pixel.
+template <class Cost>
+HPM_HD float CostFromAllViews(const VisitParams& params,
+                              const Cost& cost,
+                              const Plane& plane) {
+  uint32_t mask;
+  return CostFromViews(
+      cost, plane, AllViews(params.num_views), params.num_views, &mask);
+}
+
 template <class Cost>
 HPM_HD void InitializePixel(const VisitParams& params,
                             const PixelState& state,
@@ -108,16 +141,12 @@ HPM_HD void InitializePixel(const VisitParams& params,
     plane.distance = -rng->Uniform(params.depth_min, params.depth_max) *
                      Dot(plane.normal, ray);
   }
-  const uint32_t asked = ViewsToAsk(params, state, start, col, row);
-  uint8_t views[kMaxViews] = {};
-  int num_views = 0;
-  for (int j = 0; j < params.num_views; ++j) {
-    if (asked >> j & 1) views[num_views++] = static_cast<uint8_t>(j);
-  }
-  float costs[kMaxViews];
-  cost.Photometric(&plane, 1, views, num_views, costs);
   state.planes[at] = plane;
-  state.costs[at] = BestViewsCost(costs, views, num_views, &state.masks[at]);
+  state.costs[at] = CostFromViews(cost,
+                                  plane,
+                                  ViewsToAsk(params, state, start, col, row),
+                                  params.num_views,
+                                  &state.masks[at]);
 }
 
 }  // namespace hpm

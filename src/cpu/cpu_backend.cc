@@ -19,6 +19,7 @@ namespace hpm {
 namespace {
 
 constexpr int kRowsPerTask = 4;
+constexpr size_t kPlanesPerTask = 64;
 
 class CpuBackend : public Backend {
  public:
@@ -34,7 +35,7 @@ class CpuBackend : public Backend {
 
   uint64_t MemoryNeeded(int width, int height, int num_srcs) const override {
     const uint64_t pixels = static_cast<uint64_t>(width) * height;
-    // Twice: the engine merges levels, and scores planes, with a second map.
+    // Twice: the engine merges levels with a second map.
     const uint64_t state =
         2 * (sizeof(Plane) + sizeof(float) + sizeof(uint32_t));
     return CpuViews::MemoryNeeded(width, height, num_srcs) + pixels * state;
@@ -102,6 +103,29 @@ class CpuBackend : public Backend {
         return uint64_t{0};
       });
     }
+  }
+
+  std::vector<float> Score(const std::vector<PixelPlane>& planes,
+                           int /*width*/,
+                           int /*height*/,
+                           const RunControl& control) override {
+    std::vector<float> costs(planes.size());
+    arena_.execute([&] {
+      tbb::parallel_for(
+          tbb::blocked_range<size_t>(0, planes.size(), kPlanesPerTask),
+          [&](const tbb::blocked_range<size_t>& range) {
+            if (control.cancel->cancelled()) return;
+            uint64_t num_evaluations = 0;
+            for (size_t i = range.begin(); i < range.end(); ++i) {
+              const CpuPixelCost cost = CostAt(planes[i].col, planes[i].row);
+              costs[i] = CostFromAllViews(visit_, cost, planes[i].plane);
+              num_evaluations += cost.num_evaluations();
+            }
+            num_evaluations_ += num_evaluations;
+          });
+    });
+    control.cancel->ThrowIfCancelled();
+    return costs;
   }
 
   std::vector<uint32_t> ConsistentViews(const HypothesisMap& map,

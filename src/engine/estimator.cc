@@ -73,16 +73,18 @@ void RunStage(Backend* backend,
     PhaseTimer timer(times, "prepare");
     backend->SetViews(views, params);
   }
-  const auto score = [&](StartFrom start, HypothesisMap* scored) {
-    Pass pass = {PassKind::kBasic, start, 0, stage.passes.front().id, 0, false};
-    pass.ask_all_views = stage.passes.front().ask_all_views;
-    backend->Run(pass, schedule.pattern, scored, {control.cancel, nullptr});
-  };
   HypothesisMap carried;
   std::vector<bool> searched;
   if (stage.from_coarser) {
     PhaseTimer timer(times, "basic");
-    score(StartFrom::kCurrent, map);
+    Pass judge = {PassKind::kBasic,
+                  StartFrom::kCurrent,
+                  0,
+                  stage.passes.front().id,
+                  0,
+                  false};
+    judge.ask_all_views = stage.passes.front().ask_all_views;
+    backend->Run(judge, schedule.pattern, map, {control.cancel, nullptr});
     carried = *map;
     searched.assign(map->planes.size(), false);
     if (stage.passes.front().start == StartFrom::kMissing)
@@ -112,9 +114,14 @@ void RunStage(Backend* backend,
     }
     if (pass.regions != RegionPriors::kNone) {
       PhaseTimer timer(times, "build prior");
-      MinedRegions mined =
-          MineRegions(views, params, *map, pass.id, [&](HypothesisMap* scored) {
-            score(StartFrom::kScore, scored);
+      MinedRegions mined = MineRegions(
+          views,
+          params,
+          *map,
+          pass.id,
+          [&](const std::vector<PixelPlane>& planes) {
+            return backend->Score(
+                planes, map->width, map->height, {control.cancel, nullptr});
           });
       map->priors = std::move(mined.priors);
       map->unexplained = std::move(mined.unexplained);

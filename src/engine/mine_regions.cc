@@ -70,48 +70,83 @@ int CountAgreeing(const std::vector<Witness>& witnesses,
   return count;
 }
 
-// The pixels that `is_wanted(col, row)` and at least `needed` views agree on,
-// row by row.
-template <class IsWanted>
+struct Pixel {
+  int col, row;
+};
+
+// Those of the pixels that at least `needed` views agree on.
 std::vector<ReliablePoint> ReliablePoints(const std::vector<Witness>& witnesses,
                                           const Camera& ref,
                                           float max_error,
                                           int needed,
                                           const HypothesisMap& map,
-                                          const IsWanted& is_wanted) {
-  std::vector<std::vector<ReliablePoint>> of_row(map.height);
-  tbb::parallel_for(
-      tbb::blocked_range<int>(0, map.height), [&](const auto& rows) {
-        for (int row = rows.begin(); row < rows.end(); ++row) {
-          for (int col = 0; col < map.width; ++col) {
-            if (!is_wanted(col, row)) continue;
-            const Plane& plane =
-                map.planes[static_cast<size_t>(row) * map.width + col];
-            if (!(plane.distance > 0)) continue;
-            float inverse_depth;
-            const int count = CountAgreeing(witnesses,
-                                            ref,
-                                            plane,
-                                            static_cast<float>(col),
-                                            static_cast<float>(row),
-                                            max_error,
-                                            &inverse_depth);
-            if (count >= needed)
-              of_row[row].push_back({col, row, inverse_depth});
-          }
-        }
-      });
+                                          const std::vector<Pixel>& pixels) {
+  constexpr size_t kChunk = 1024;
+  const size_t num_chunks = (pixels.size() + kChunk - 1) / kChunk;
+  std::vector<std::vector<ReliablePoint>> of_chunk(num_chunks);
+  tbb::parallel_for(size_t{0}, num_chunks, [&](size_t chunk) {
+    const size_t end = std::min(pixels.size(), (chunk + 1) * kChunk);
+    for (size_t i = chunk * kChunk; i < end; ++i) {
+      const auto [col, row] = pixels[i];
+      const Plane& plane =
+          map.planes[static_cast<size_t>(row) * map.width + col];
+      if (!(plane.distance > 0)) continue;
+      float inverse_depth;
+      const int count = CountAgreeing(witnesses,
+                                      ref,
+                                      plane,
+                                      static_cast<float>(col),
+                                      static_cast<float>(row),
+                                      max_error,
+                                      &inverse_depth);
+      if (count >= needed) of_chunk[chunk].push_back({col, row, inverse_depth});
+    }
+  });
   std::vector<ReliablePoint> points;
-  for (const auto& row : of_row)
-    points.insert(points.end(), row.begin(), row.end());
+  for (const auto& chunk : of_chunk)
+    points.insert(points.end(), chunk.begin(), chunk.end());
   return points;
 }
 
-bool IsRim(const WeakRegions& regions, int col, int row) {
-  if (regions.At(col, row) > 0) return false;
-  bool near = false;
-  regions.ForEachNear(col, row, kRimWidth, [&](int) { near = true; });
-  return near;
+// Every step-th pixel of every step-th row that lies in a region.
+std::vector<Pixel> LatticePixels(const WeakRegions& regions, int step) {
+  std::vector<Pixel> pixels;
+  for (int row = 0; row < regions.height; row += step) {
+    for (int col = 0; col < regions.width; col += step) {
+      if (regions.At(col, row) > 0) pixels.push_back({col, row});
+    }
+  }
+  return pixels;
+}
+
+// The rims of the regions, and per pixel whether it lies in one, farther than
+// kRimWidth from anything else.
+struct Outlines {
+  std::vector<Pixel> rim;  // row by row
+  std::vector<bool> inner;
+};
+
+Outlines OutlinesOf(const WeakRegions& regions) {
+  Outlines outlines;
+  outlines.inner.resize(regions.label.size());
+  std::vector<std::vector<Pixel>> of_row(regions.height);
+  regions.ForEachBand([&](const Rows& rows) {
+    const LabelWindows windows(regions, rows, kRimWidth);
+    for (int row = rows.begin; row < rows.end; ++row) {
+      for (int col = 0; col < regions.width; ++col) {
+        const int greatest = windows.Greatest(col, row);
+        if (greatest == 0) continue;
+        if (regions.At(col, row) == 0) {
+          of_row[row].push_back({col, row});
+        } else if (windows.Least(col, row) == greatest) {
+          outlines.inner[static_cast<size_t>(row) * regions.width + col] = true;
+        }
+      }
+    }
+  });
+  for (const auto& row : of_row)
+    outlines.rim.insert(outlines.rim.end(), row.begin(), row.end());
+  return outlines;
 }
 
 // The plane of densest support around the pixel whose depth there is allowed;
@@ -158,7 +193,7 @@ MinedRegions MineRegions(const ViewSet& views,
                          const MethodParams& params,
                          const HypothesisMap& map,
                          uint64_t key,
-                         const ScoreHypotheses& score) {
+                         const ScorePlanes& score) {
   const std::vector<Witness> witnesses = WitnessesOf(views);
   if (witnesses.empty() || !(params.region_max_gradient > 0)) return {};
   const WeakRegions regions = FindWeakRegions(
@@ -167,24 +202,24 @@ MinedRegions MineRegions(const ViewSet& views,
   const int needed = std::min(params.region_min_consistent,
                               static_cast<int>(witnesses.size()));
   const int step = LatticeStep(map);
-  const auto reliable = [&](const auto& is_wanted) {
+  const auto reliable = [&](const std::vector<Pixel>& pixels) {
     return ReliablePoints(witnesses,
                           views.ref.camera,
                           params.region_max_error,
                           needed,
                           map,
-                          is_wanted);
+                          pixels);
   };
-  RegionPlanes planes = FindRegionPlanes(
-      regions,
-      views.ref.camera,
-      reliable([&](int col, int row) {
-        return row % step == 0 && col % step == 0 && regions.At(col, row) > 0;
-      }),
-      reliable([&](int col, int row) { return IsRim(regions, col, row); }),
-      step,
-      params.region_max_residual / Parallax(views),
-      CombineBits(views.random_key, key));
+  Outlines outlines = OutlinesOf(regions);
+  RegionPlanes planes =
+      FindRegionPlanes(regions,
+                       views.ref.camera,
+                       reliable(LatticePixels(regions, step)),
+                       reliable(outlines.rim),
+                       step,
+                       params.region_max_residual / Parallax(views),
+                       CombineBits(views.random_key, key));
+  outlines.rim = {};
   const auto evidence =
       FindEvidence(views, regions, planes, step, params.patch_radius, score);
   for (size_t label = 1; label < planes.of_region.size(); ++label) {
@@ -198,18 +233,20 @@ MinedRegions MineRegions(const ViewSet& views,
   }
   MinedRegions result = {
       std::vector<Plane>(map.planes.size(), Plane{{0, 0, 0}, 0}),
-      std::vector<bool>(map.planes.size(), false)};
-  for (int row = 0; row < map.height; ++row) {
-    for (int col = 0; col < map.width; ++col) {
-      const int label = regions.At(col, row);
-      if (label == 0) continue;
-      const size_t at = static_cast<size_t>(row) * map.width + col;
-      const Plane* plane = NearestPlane(planes, label, views, col, row);
-      if (plane != nullptr) result.priors[at] = *plane;
-      result.unexplained[at] =
-          plane == nullptr && regions.Fills(col, row, kRimWidth);
+      std::move(outlines.inner)};
+  regions.ForEachBand([&](const Rows& rows) {
+    for (int row = rows.begin; row < rows.end; ++row) {
+      for (int col = 0; col < regions.width; ++col) {
+        const int label = regions.At(col, row);
+        if (label == 0) continue;
+        const Plane* plane = NearestPlane(planes, label, views, col, row);
+        if (plane == nullptr) continue;
+        const size_t at = static_cast<size_t>(row) * regions.width + col;
+        result.priors[at] = *plane;
+        result.unexplained[at] = false;
+      }
     }
-  }
+  });
   return result;
 }
 

@@ -26,7 +26,7 @@ MinedRegions MineRegions(const ViewSet& views,
                          const MethodParams& params,
                          const HypothesisMap& map,
                          uint64_t key,
-                         const ScoreHypotheses& score);
+                         const ScorePlanes& score);
 
 // Whether a candidate may lead its region. Either the images match better on it
 // than beside it; or they do not contradict it and its points say so: they are

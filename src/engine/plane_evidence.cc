@@ -68,10 +68,32 @@ std::vector<std::vector<size_t>> PixelsThatTell(const WeakRegions& regions,
   return inner;
 }
 
-struct Sums {
-  double at = 0, nearer = 0, farther = 0;
-  int count = 0;
+// Pixels that are asked about one candidate.
+struct Question {
+  size_t label, k;  // the candidate
+  std::vector<size_t> pixels;
 };
+
+std::vector<Question> QuestionsTo(const RegionPlanes& candidates,
+                                  const WeakRegions& regions,
+                                  std::vector<std::vector<size_t>> telling) {
+  std::vector<Question> questions;
+  for (size_t label = 1; label < candidates.of_region.size(); ++label) {
+    const std::vector<RegionPlane>& of_region = candidates.of_region[label];
+    for (size_t k = 0; k < of_region.size(); ++k) {
+      Question question = {label, k, {}};
+      for (const size_t at : telling[label]) {
+        const size_t cell =
+            candidates.CellAt(static_cast<int>(at % regions.width),
+                              static_cast<int>(at / regions.width));
+        if (IsNearestOfItsKind(of_region, k, cell))
+          question.pixels.push_back(at);
+      }
+      if (!question.pixels.empty()) questions.push_back(std::move(question));
+    }
+  }
+  return questions;
+}
 
 }  // namespace
 
@@ -81,56 +103,38 @@ std::vector<std::vector<PlaneEvidence>> FindEvidence(
     const RegionPlanes& candidates,
     int lattice_step,
     int patch_radius,
-    const ScoreHypotheses& score) {
+    const ScorePlanes& score) {
   const auto& of_region = candidates.of_region;
   std::vector<std::vector<PlaneEvidence>> result(of_region.size());
-  size_t most = 0;
-  for (size_t label = 0; label < of_region.size(); ++label) {
+  for (size_t label = 0; label < of_region.size(); ++label)
     result[label].resize(of_region[label].size());
-    most = std::max(most, of_region[label].size());
-  }
   const float parallax = MedianParallax(views);
   if (!(parallax > 0)) return result;
   const float shift = kShift / parallax;
-  const auto telling = PixelsThatTell(regions, lattice_step, patch_radius);
-  HypothesisMap map(regions.width, regions.height);
-  // The k-th candidates of all regions together.
-  for (size_t k = 0; k < most; ++k) {
-    std::vector<size_t> pixels;
-    std::vector<size_t> labels;
-    for (size_t label = 1; label < of_region.size(); ++label) {
-      if (k >= of_region[label].size()) continue;
-      for (const size_t at : telling[label]) {
-        const size_t cell =
-            candidates.CellAt(static_cast<int>(at % regions.width),
-                              static_cast<int>(at / regions.width));
-        if (!IsNearestOfItsKind(of_region[label], k, cell)) continue;
-        pixels.push_back(at);
-        labels.push_back(label);
+  const std::vector<Question> questions = QuestionsTo(
+      candidates, regions, PixelsThatTell(regions, lattice_step, patch_radius));
+  std::vector<PixelPlane> planes;
+  for (const Question& question : questions) {
+    for (const float moved : {0.0f, shift, -shift}) {
+      const Plane plane =
+          Moved(of_region[question.label][question.k].plane, moved);
+      for (const size_t at : question.pixels) {
+        planes.push_back({static_cast<int>(at % regions.width),
+                          static_cast<int>(at / regions.width),
+                          plane});
       }
     }
-    std::vector<Sums> sums(of_region.size());
-    const auto score_at = [&](float moved, double Sums::*sum) {
-      for (size_t i = 0; i < pixels.size(); ++i) {
-        map.planes[pixels[i]] = Moved(of_region[labels[i]][k].plane, moved);
-      }
-      score(&map);
-      for (size_t i = 0; i < pixels.size(); ++i)
-        sums[labels[i]].*sum += map.costs[pixels[i]];
-    };
-    score_at(0, &Sums::at);
-    score_at(shift, &Sums::nearer);
-    score_at(-shift, &Sums::farther);
-    for (size_t i = 0; i < pixels.size(); ++i) {
-      ++sums[labels[i]].count;
-      map.planes[pixels[i]].distance = 0;
+  }
+  const std::vector<float> costs = score(planes);
+  auto cost = costs.begin();
+  for (const Question& question : questions) {
+    double sums[3] = {};  // at the plane, nearer, farther
+    for (double& sum : sums) {
+      for (size_t i = 0; i < question.pixels.size(); ++i) sum += *cost++;
     }
-    for (size_t label = 0; label < sums.size(); ++label) {
-      const Sums& s = sums[label];
-      if (s.count == 0) continue;
-      result[label][k] = {s.count,
-                          (std::min(s.nearer, s.farther) - s.at) / s.count};
-    }
+    const auto count = static_cast<int>(question.pixels.size());
+    result[question.label][question.k] = {
+        count, (std::min(sums[1], sums[2]) - sums[0]) / count};
   }
   return result;
 }

@@ -3,8 +3,8 @@
 // nothing where all views follow the same prior or the same noise.
 #pragma once
 
+#include "src/core/initialize_pixel.h"
 #include "src/engine/view.h"
-#include "src/image/hypothesis_map.h"
 #include "src/prior/region_planes.h"
 
 #include <functional>
@@ -12,8 +12,9 @@
 
 namespace hpm {
 
-// Sets the costs of the pixels that have a hypothesis, from all views.
-using ScoreHypotheses = std::function<void(HypothesisMap* map)>;
+// The costs of planes at pixels, from all views.
+using ScorePlanes =
+    std::function<std::vector<float>(const std::vector<PixelPlane>& planes)>;
 
 struct PlaneEvidence {
   int num_pixels = 0;  // looked at
@@ -32,6 +33,6 @@ std::vector<std::vector<PlaneEvidence>> FindEvidence(
     const RegionPlanes& candidates,
     int lattice_step,
     int patch_radius,
-    const ScoreHypotheses& score);
+    const ScorePlanes& score);
 
 }  // namespace hpm

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <mutex>
 #include <utility>
 
 #include <Eigen/Dense>
@@ -183,15 +183,53 @@ double Narrowness(const std::vector<ReliablePoint>& points) {
 // A rim point belongs to every region that is near.
 std::vector<std::vector<ReliablePoint>> RimsOfRegions(
     const WeakRegions& regions, const std::vector<ReliablePoint>& rim) {
+  struct Membership {
+    size_t point;
+    int label;
+  };
+  constexpr size_t kChunk = 4096;
+  const size_t num_chunks = (rim.size() + kChunk - 1) / kChunk;
+  std::vector<std::vector<Membership>> of_chunk(num_chunks);
+  tbb::parallel_for(size_t{0}, num_chunks, [&](size_t chunk) {
+    std::vector<Membership>& members = of_chunk[chunk];
+    const size_t end = std::min(rim.size(), (chunk + 1) * kChunk);
+    for (size_t i = chunk * kChunk; i < end; ++i) {
+      const size_t first = members.size();
+      regions.ForEachNear(rim[i].col, rim[i].row, kRimWidth, [&](int label) {
+        for (size_t k = first; k < members.size(); ++k) {
+          if (members[k].label == label) return;
+        }
+        members.push_back({i, label});
+      });
+    }
+  });
   std::vector<std::vector<ReliablePoint>> result(regions.num_regions + 1);
-  for (const ReliablePoint& point : rim) {
-    std::set<int> near;
-    regions.ForEachNear(point.col, point.row, kRimWidth, [&](int label) {
-      near.insert(label);
-    });
-    for (const int label : near) result[label].push_back(point);
+  for (const auto& members : of_chunk) {
+    for (const Membership& m : members) result[m.label].push_back(rim[m.point]);
   }
   return result;
+}
+
+// Pixels by label.
+std::vector<int64_t> Areas(const WeakRegions& regions) {
+  std::vector<int64_t> areas(regions.num_regions + 1, 0);
+  std::mutex mutex;
+  regions.ForEachBand([&](const Rows& rows) {
+    std::vector<int64_t> of_band(areas.size(), 0);
+    const size_t width = regions.width;
+    const auto end =
+        regions.label.begin() + static_cast<ptrdiff_t>(rows.end * width);
+    for (auto at =
+             regions.label.begin() + static_cast<ptrdiff_t>(rows.begin * width);
+         at != end;) {
+      const auto run = at;
+      while (at != end && *at == *run) ++at;
+      of_band[*run] += at - run;
+    }
+    const std::lock_guard<std::mutex> lock(mutex);
+    for (size_t i = 0; i < areas.size(); ++i) areas[i] += of_band[i];
+  });
+  return areas;
 }
 
 }  // namespace
@@ -210,8 +248,7 @@ RegionPlanes FindRegionPlanes(const WeakRegions& regions,
   const int cell_rows = (regions.height - 1) / result.cell + 1;
   result.of_region.resize(regions.num_regions + 1);
 
-  std::vector<double> area(regions.num_regions + 1, 0);
-  for (const uint16_t label : regions.label) ++area[label];
+  const std::vector<int64_t> areas = Areas(regions);
   std::vector<std::vector<ReliablePoint>> inner_of(regions.num_regions + 1);
   for (const ReliablePoint& point : inner) {
     inner_of[regions.At(point.col, point.row)].push_back(point);
@@ -222,7 +259,8 @@ RegionPlanes FindRegionPlanes(const WeakRegions& regions,
     Rng rng(random_key, label, 0);
     std::vector<ReliablePoint>& inside = inner_of[label];
     std::vector<ReliablePoint>& outside = rim_of[label];
-    const double num_lattice = area[label] / (lattice_step * lattice_step);
+    const auto area = static_cast<double>(areas[label]);
+    const double num_lattice = area / (lattice_step * lattice_step);
     const auto num_inside = static_cast<double>(inside.size());
     Thin(&inside, &rng);
     Thin(&outside, &rng);
@@ -246,7 +284,7 @@ RegionPlanes FindRegionPlanes(const WeakRegions& regions,
       plane.rim_on /= num_outside;
       plane.rim_behind /= num_outside;
       if (plane.inside < kMinInside && plane.rim_on < kMinRim) return;
-      plane.spread = Narrowness(found.support) / std::sqrt(area[label]);
+      plane.spread = Narrowness(found.support) / std::sqrt(area);
       const cv::Mat density =
           SupportDensity(found, result.cell, result.cell_cols, cell_rows);
       plane.nearness.assign(density.begin<float>(), density.end<float>());

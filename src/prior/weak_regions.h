@@ -7,9 +7,15 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace hpm {
+
+// Rows [begin, end) of an image.
+struct Rows {
+  int begin, end;
+};
 
 struct WeakRegions {
   int width = 0, height = 0;
@@ -36,6 +42,11 @@ struct WeakRegions {
     return true;
   }
 
+  // Calls visit(rows) for bands that make up the image, from several threads.
+  // Each begins at a multiple of 64 rows, so that no two share a word of a
+  // std::vector<bool>.
+  void ForEachBand(const std::function<void(const Rows&)>& visit) const;
+
   // Calls visit(label) for the weak pixels at most `radius` away.
   template <class Visit>
   void ForEachNear(int col, int row, int radius, const Visit& visit) const {
@@ -49,6 +60,26 @@ struct WeakRegions {
       }
     }
   }
+};
+
+// The least and the greatest label in the window of `radius` around each pixel
+// of some rows, as far as that lies in the image.
+class LabelWindows {
+ public:
+  LabelWindows(const WeakRegions& regions, const Rows& rows, int radius);
+
+  // At a pixel of the image, in these rows.
+  int Least(int col, int row) const { return least_[At(col, row)]; }
+  int Greatest(int col, int row) const { return greatest_[At(col, row)]; }
+
+ private:
+  size_t At(int col, int row) const {
+    return static_cast<size_t>(row - first_row_) * width_ + col;
+  }
+
+  int first_row_;  // of those that are held
+  int width_;
+  std::vector<uint16_t> least_, greatest_;
 };
 
 // Pixels whose gradient, after a slight blur against noise, stays under

@@ -3,6 +3,7 @@
 #include "src/core/sampling_pattern.h"
 #include "tests/cpu/scene_views.h"
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstring>
@@ -108,6 +109,35 @@ TEST_F(CpuBackendTest, AStoredStartComputesNoCosts) {
   EXPECT_EQ(backend->num_cost_evaluations(), num_before);
   EXPECT_TRUE(SameBytes(before.costs, map.costs));
   EXPECT_TRUE(SameBytes(before.planes, map.planes));
+}
+
+// Whatever the order of the planes and however many a pixel has.
+TEST_F(CpuBackendTest, ScoresPlanesAsAPassOverAMapWould) {
+  const auto backend = MakeCpuBackend("auto", 2);
+  backend->SetViews(views_, MethodParams());
+  std::vector<PixelPlane> planes;
+  for (int i = 0; i < 700; ++i) {
+    const int col = i * 7 % kWidth, row = i * 5 % kHeight;
+    planes.push_back({col,
+                      row,
+                      PlaneFromDepth(views_.ref.camera,
+                                     static_cast<float>(col),
+                                     static_cast<float>(row),
+                                     4 + 0.01f * static_cast<float>(i),
+                                     {0, 0, -1})});
+    if (i % 3 == 0) planes.push_back(planes.back());
+    planes.back().plane.distance *= 1.1f;
+  }
+  const std::vector<float> costs =
+      backend->Score(planes, kWidth, kHeight, control_);
+  const uint64_t num_costs = backend->num_cost_evaluations();
+  EXPECT_EQ(num_costs, planes.size() * views_.srcs.size());
+  EXPECT_LT(*std::min_element(costs.begin(), costs.end()), 0.5f);
+  EXPECT_TRUE(SameBytes(
+      costs, backend->Backend::Score(planes, kWidth, kHeight, control_)));
+  EXPECT_EQ(backend->num_cost_evaluations(), 2 * num_costs);
+  EXPECT_TRUE(backend->Score({}, kWidth, kHeight, control_).empty());
+  EXPECT_TRUE(backend->Backend::Score({}, kWidth, kHeight, control_).empty());
 }
 
 // The other colour follows those that were visited, or stays as it was.

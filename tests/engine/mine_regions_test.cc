@@ -53,27 +53,29 @@ class MineRegionsTest : public testing::Test {
   float TrueDepth(size_t at) const { return rendered_[0].truth.depth[at]; }
   // As if the images matched `costs_` worse for each unit of 1/z beside the
   // depth that is `matching_scale_` times the true one.
-  void Score(HypothesisMap* map) {
-    for (size_t at = 0; at < map->planes.size(); ++at) {
-      if (map->planes[at].distance == 0) continue;
-      scored_.push_back(map->planes[at]);
-      if (static_cast<int>(at / kWidth) < first_sighted_row_) {
-        map->costs[at] = 0.5f;
+  std::vector<float> Score(const std::vector<PixelPlane>& planes) {
+    std::vector<float> costs;
+    for (const auto& [col, row, plane] : planes) {
+      scored_.push_back(plane);
+      if (row < first_sighted_row_) {
+        costs.push_back(0.5f);
         continue;
       }
       const float z = DepthAt(views_.ref.camera,
-                              map->planes[at],
-                              static_cast<float>(at % kWidth),
-                              static_cast<float>(at / kWidth));
-      map->costs[at] =
-          0.5f +
-          slope_ * std::abs(1 / z - 1 / (matching_scale_ * TrueDepth(at)));
+                              plane,
+                              static_cast<float>(col),
+                              static_cast<float>(row));
+      const float true_depth =
+          TrueDepth(static_cast<size_t>(row) * kWidth + col);
+      costs.push_back(
+          0.5f + slope_ * std::abs(1 / z - 1 / (matching_scale_ * true_depth)));
     }
+    return costs;
   }
   std::vector<Plane> Mine() { return MineAll().priors; }
   MinedRegions MineAll() {
     return MineRegions(
-        views_, params_, map_, 7, [this](HypothesisMap* map) { Score(map); });
+        views_, params_, map_, 7, [this](const auto& p) { return Score(p); });
   }
 
   // Mean depth of the priors over the truth.

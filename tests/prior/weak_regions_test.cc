@@ -1,9 +1,14 @@
 #include "src/prior/weak_regions.h"
 
+#include "src/core/rng.h"
+
 #include <algorithm>
-#include <set>
+#include <atomic>
+#include <cmath>
+#include <utility>
 
 #include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
 
 namespace hpm {
 namespace {
@@ -71,6 +76,127 @@ TEST(FindWeakRegions, NoiseDoesNotBreakAPlainWall) {
   EXPECT_EQ(regions.num_regions, 1);
   EXPECT_GT(std::count(regions.label.begin(), regions.label.end(), 1),
             0.95 * kWidth * kHeight);
+}
+
+// Labels in the order in which the image is read, by flooding it pixel by
+// pixel.
+std::vector<uint16_t> FloodedRegions(const GrayImage& image,
+                                     float max_gradient,
+                                     int min_area) {
+  const cv::Mat grey(image.height,
+                     image.width,
+                     CV_8U,
+                     const_cast<uint8_t*>(image.data.data()));
+  cv::Mat blurred, dx, dy, gradient;
+  grey.convertTo(blurred, CV_32F);
+  cv::GaussianBlur(blurred, blurred, cv::Size(), 1.0);
+  cv::Sobel(blurred, dx, CV_32F, 1, 0, 3, 1.0 / 8);
+  cv::Sobel(blurred, dy, CV_32F, 0, 1, 3, 1.0 / 8);
+  cv::magnitude(dx, dy, gradient);
+  cv::Mat weak = gradient < max_gradient;
+  const cv::Mat square = cv::getStructuringElement(cv::MORPH_RECT, {3, 3});
+  cv::erode(weak, weak, square);
+  cv::Mat kept = cv::Mat::zeros(weak.size(), CV_16U);
+  uint16_t num_regions = 0;
+  for (int at = 0; at < weak.rows * weak.cols; ++at) {
+    std::vector<cv::Point> flood;
+    const auto wet = [&](int col, int row) {
+      if (col < 0 || row < 0 || col >= weak.cols || row >= weak.rows) return;
+      if (weak.at<uint8_t>(row, col) == 0) return;
+      weak.at<uint8_t>(row, col) = 0;
+      flood.emplace_back(col, row);
+    };
+    wet(at % weak.cols, at / weak.cols);
+    for (size_t i = 0; i < flood.size(); ++i) {
+      const auto [col, row] = std::pair(flood[i].x, flood[i].y);
+      wet(col - 1, row);
+      wet(col + 1, row);
+      wet(col, row - 1);
+      wet(col, row + 1);
+    }
+    if (static_cast<int>(flood.size()) < std::max(1, min_area)) continue;
+    ++num_regions;
+    for (const cv::Point& p : flood) kept.at<uint16_t>(p) = num_regions;
+  }
+  cv::Mat grown;
+  cv::dilate(kept, grown, square);
+  std::vector<uint16_t> labels;
+  for (int at = 0; at < weak.rows * weak.cols; ++at) {
+    const auto own = kept.at<uint16_t>(at / weak.cols, at % weak.cols);
+    labels.push_back(
+        own > 0 ? own : grown.at<uint16_t>(at / weak.cols, at % weak.cols));
+  }
+  return labels;
+}
+
+// Plain and textured blotches, so that regions of all shapes meet in several
+// bands of rows.
+GrayImage Blotches(int width, int height, uint64_t key) {
+  GrayImage image = {width, height, std::vector<uint8_t>(width * height)};
+  for (int row = 0; row < height; ++row) {
+    for (int col = 0; col < width; ++col) {
+      Rng blotch(key, col / 9, row / 7);
+      Rng pixel(key + 1, col, row);
+      const float noise = blotch.Uniform() < 0.35f ? 40 : 2;
+      image.data[row * width + col] =
+          static_cast<uint8_t>(100 + noise * pixel.Uniform());
+    }
+  }
+  return image;
+}
+
+TEST(FindWeakRegions, ManyBandsOfRowsAreOneImage) {
+  for (const int height : {1, 63, 64, 65, 300}) {
+    const GrayImage image = Blotches(257, height, height);
+    const WeakRegions regions = FindWeakRegions(image, 1.4f, 0.0005f);
+    EXPECT_EQ(regions.label,
+              FloodedRegions(image,
+                             1.4f,
+                             static_cast<int>(std::ceil(
+                                 static_cast<double>(0.0005f) * 257 * height))))
+        << height;
+    if (height == 300) {
+      EXPECT_GT(regions.num_regions, 5);
+    }
+  }
+}
+
+TEST(WeakRegions, BandsMakeUpTheImage) {
+  WeakRegions regions;
+  regions.width = 10;
+  regions.height = 200;
+  std::vector<std::atomic<int>> num_visits(regions.height);
+  regions.ForEachBand([&](const Rows& rows) {
+    EXPECT_EQ(rows.begin % 64, 0);
+    for (int row = rows.begin; row < rows.end; ++row) ++num_visits[row];
+  });
+  for (const auto& count : num_visits) EXPECT_EQ(count, 1);
+}
+
+TEST(LabelWindows, HoldTheLeastAndTheGreatestAsFarAsTheImageReaches) {
+  constexpr int kRadius = 3;
+  const GrayImage image = Blotches(90, 150, 3);
+  const WeakRegions regions = FindWeakRegions(image, 1.4f, 0.0005f);
+  regions.ForEachBand([&](const Rows& rows) {
+    const LabelWindows windows(regions, rows, kRadius);
+    for (int row = rows.begin; row < rows.end; ++row) {
+      for (int col = 0; col < regions.width; ++col) {
+        int least = regions.At(col, row), greatest = least;
+        for (int r = std::max(0, row - kRadius);
+             r <= std::min(regions.height - 1, row + kRadius);
+             ++r) {
+          for (int c = std::max(0, col - kRadius);
+               c <= std::min(regions.width - 1, col + kRadius);
+               ++c) {
+            least = std::min(least, regions.At(c, r));
+            greatest = std::max(greatest, regions.At(c, r));
+          }
+        }
+        ASSERT_EQ(windows.Least(col, row), least) << col << " " << row;
+        ASSERT_EQ(windows.Greatest(col, row), greatest) << col << " " << row;
+      }
+    }
+  });
 }
 
 TEST(FindWeakRegions, TinyImagesAreNoProblem) {
