@@ -5,7 +5,7 @@
 #   bench/gpu_carry.sh [WORKSPACE...]   # workspaces to take along beside those of data/
 #
 # GPU_ARCH (90): the card's compute capability. GPU_VARIANTS: more builds of hpm_gpu_bench
-# to compare, each NAME=COMPILER_OPTIONS, e.g. "blocks6=-DHPM_BLOCKS_PER_PROCESSOR=6".
+# to compare, each NAME=OPTION,OPTION..., e.g. "blocks8=-DHPM_BLOCKS_PER_PROCESSOR=8".
 set -euo pipefail
 cd "$(dirname "$0")/.."
 carry=build/gpu_carry
@@ -36,7 +36,8 @@ mkdir -p "$carry/bin" "$carry/lib" "$carry/scenes"
 build_in build/gpu "" hpm_mvs cuda_gpu_test hpm_gpu_bench eval_depth
 cp build/gpu/{colmap_plugin/tool/hpm_mvs,tests/cuda/cuda_gpu_test,bench/hpm_gpu_bench,bench/eval_depth} "$carry/bin/"
 for variant in ${GPU_VARIANTS:-}; do
-  build_in "build/gpu_${variant%%=*}" "${variant#*=}" hpm_gpu_bench
+  options=${variant#*=}
+  build_in "build/gpu_${variant%%=*}" "${options//,/ }" hpm_gpu_bench
   cp "build/gpu_${variant%%=*}/bench/hpm_gpu_bench" "$carry/bin/hpm_gpu_bench_${variant%%=*}"
 done
 write_stand_ins "$(ldd "$carry/bin/hpm_mvs" | awk '$1 ~ /^libopencv_imgcodecs/ { print $3 }')"

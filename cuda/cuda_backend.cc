@@ -209,31 +209,31 @@ class CudaBackendImpl : public CudaBackend {
     return consistent;
   }
 
-  std::vector<float> Costs(const HypothesisMap& map) override {
+  std::vector<float> Score(const std::vector<PixelPlane>& planes,
+                           const RunControl& control) override {
+    std::vector<float> costs(planes.size());
+    if (planes.empty()) return costs;
+    control.cancel->ThrowIfCancelled();
     UseDevice();
-    const PixelState state = Upload(map, false);
-    const size_t size = map.planes.size() * tables_.problem.params.num_views;
-    DeviceBuffer<float> costs;
-    costs.Reserve(size);
-    for (int color = 0; color < 2; ++color) {
-      SweepLaunch launch = {};
-      launch.problem = &tables_.problem;
-      launch.state = state;
-      launch.band = BandOf(state, color, 0, state.height);
-      if (options_.format == ImageFormat::kQuad) {
-        LaunchQuadCosts(launch, costs.data(), stream());
-      } else {
-        LaunchTextureCosts(launch, costs.data(), stream());
-      }
+    PhaseTimer timer(&seconds_, "score");
+    pixel_planes_.Upload(planes, stream());
+    const ScoreLaunch launch = {&tables_.problem,
+                                pixel_planes_.data(),
+                                planes.size(),
+                                pixel_costs_.Reserve(planes.size())};
+    if (options_.format == ImageFormat::kQuad) {
+      LaunchQuadScore(launch, stream());
+    } else {
+      LaunchTextureScore(launch, stream());
     }
-    std::vector<float> result(size);
-    costs.Download(result.data(), size, stream());
-    Wait("computing costs");
-    return result;
+    pixel_costs_.Download(costs.data(), costs.size(), stream());
+    Wait("scoring planes");
+    num_evaluations_ += planes.size() * tables_.problem.params.num_views;
+    return costs;
   }
 
   uint64_t num_cost_evaluations() const override { return num_evaluations_; }
-  // "upload" and "download" are of the host's clock.
+  // "upload", "download" and "score" are of the host's clock.
   std::map<std::string, double> DeviceSeconds() const override {
     return seconds_;
   }
@@ -361,6 +361,8 @@ class CudaBackendImpl : public CudaBackend {
   DeviceBuffer<Vec3f> src_centers_;
   DeviceBuffer<Plane> planes_, priors_, low_priors_;
   DeviceBuffer<float> costs_;
+  DeviceBuffer<PixelPlane> pixel_planes_;
+  DeviceBuffer<float> pixel_costs_;
   DeviceBuffer<uint32_t> masks_, consistent_;
   DeviceBuffer<unsigned long long> counter_;
   // The map whose hypotheses the card holds as they are on the host.

@@ -21,10 +21,6 @@ struct CudaOptions {
 
 class CudaBackend : public Backend {
  public:
-  // Costs of each pixel's plane in every view, [pixel * num_views + view], for
-  // tests. After SetViews.
-  virtual std::vector<float> Costs(const HypothesisMap& map) = 0;
-
   // Longest launch so far, seconds.
   virtual double longest_launch() const = 0;
 };

@@ -9,10 +9,12 @@
 
 namespace hpm {
 
-// 1 / x, up to the last digit.
+// 1 / x, up to the last digit; infinite where |x| < 2^-126.
 HPM_HD float FastReciprocal(float x) {
 #if defined(__CUDA_ARCH__)
-  return __fdividef(1.0f, x);
+  float result;
+  asm("rcp.approx.ftz.f32 %0, %1;" : "=f"(result) : "f"(x));
+  return result;
 #else
   return 1.0f / x;
 #endif

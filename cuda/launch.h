@@ -24,13 +24,16 @@ void LaunchQuadSweep(const SweepLaunch& launch, cudaStream_t stream);
 void LaunchFollow(const SweepLaunch& launch, cudaStream_t stream);
 void LaunchMedian(const SweepLaunch& launch, cudaStream_t stream);
 
-// costs[pixel * num_views + view] of each pixel's plane in the band.
-void LaunchTextureCosts(const SweepLaunch& launch,
-                        float* costs,
-                        cudaStream_t stream);
-void LaunchQuadCosts(const SweepLaunch& launch,
-                     float* costs,
-                     cudaStream_t stream);
+// costs[i]: of planes[i], from all views; both in the card's memory.
+struct ScoreLaunch {
+  const DeviceProblem* problem;  // of the host
+  const PixelPlane* planes;
+  size_t num_planes;
+  float* costs;
+};
+
+void LaunchTextureScore(const ScoreLaunch& launch, cudaStream_t stream);
+void LaunchQuadScore(const ScoreLaunch& launch, cudaStream_t stream);
 
 // planes[pixel of ref] from those of a coarser level; see
 // src/core/upsample_plane.h.

@@ -27,6 +27,11 @@ HPM_HD void StoreWindow(const RefPatch& patch,
   }
 }
 
+#if !defined(HPM_ROWS)
+#define HPM_ROWS 6
+#endif
+constexpr int kRowsUnrolled = HPM_ROWS;
+
 template <class Sampler>
 HPM_HD float PairCost(const PatchShape& shape,
                       const Window& window,
@@ -52,7 +57,7 @@ HPM_HD float PairCost(const PatchShape& shape,
   if (!IsVisible(warp, shape, view.width, view.height)) return kMaxCost;
   float sum_s = 0, sum_ss = 0, sum_rs = 0;
 #if defined(__CUDA_ARCH__)
-#pragma unroll
+#pragma unroll kRowsUnrolled
 #endif
   for (int j = 0; j < kPatchAxis; ++j) {
     const Vec3f line =

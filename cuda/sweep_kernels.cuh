@@ -25,6 +25,17 @@ struct WarpWindows {
   WindowSample samples[kPatchSize][kWarpSize];
 };
 
+// Puts the window of this lane's pixel among those of its warp.
+__device__ inline Window WindowAt(const DeviceProblem& problem,
+                                  WarpWindows* windows,
+                                  int col,
+                                  int row) {
+  WindowSample* samples = &windows->samples[0][threadIdx.x % kWarpSize];
+  const RefPatch patch = RefPatchAt(problem, col, row);
+  StoreWindow(patch, samples, kWarpSize);
+  return {samples, kWarpSize, patch.center, patch.mean, patch.variance};
+}
+
 __device__ inline void CountEvaluations(int evaluations,
                                         int lane,
                                         unsigned long long* total) {
@@ -53,11 +64,8 @@ __global__ void __launch_bounds__(kWarpsPerBlock* kWarpSize,
   const Pixel pixel = PixelOf(band, warp, lane);
   int evaluations = 0;
   if (pixel.inside) {
-    WindowSample* samples = &windows[threadIdx.x / kWarpSize].samples[0][lane];
-    const RefPatch patch = RefPatchAt(problem, pixel.col, pixel.row);
-    StoreWindow(patch, samples, kWarpSize);
-    const Window window = {
-        samples, kWarpSize, patch.center, patch.mean, patch.variance};
+    const Window window = WindowAt(
+        problem, &windows[threadIdx.x / kWarpSize], pixel.col, pixel.row);
     const LaneCost<Sampler> cost(problem, window, pixel.col, pixel.row);
     VisitPixel<kKind>(
         problem, sweep, state, consistent, cost, pixel.col, pixel.row);
@@ -67,34 +75,20 @@ __global__ void __launch_bounds__(kWarpsPerBlock* kWarpSize,
   CountEvaluations(evaluations, lane, num_evaluations);
 }
 
-// The costs of each pixel's own plane in all views, for tests:
-// costs[pixel * num_views + view].
 template <class Sampler>
 __global__ void __launch_bounds__(kWarpsPerBlock* kWarpSize)
-    CostsOfPlanes(const __grid_constant__ DeviceProblem problem,
-                  const PixelState state,
-                  const Band band,
-                  float* costs) {
+    ScoreKernel(const __grid_constant__ DeviceProblem problem,
+                const PixelPlane* planes,
+                size_t num_planes,
+                float* costs) {
   __shared__ WarpWindows windows[kWarpsPerBlock];
-  const int lane = threadIdx.x % kWarpSize;
-  const int64_t warp = static_cast<int64_t>(blockIdx.x) * kWarpsPerBlock +
-                       threadIdx.x / kWarpSize;
-  if (warp >= band.num_warps()) return;
-  const Pixel pixel = PixelOf(band, warp, lane);
-  if (!pixel.inside) return;
-  WindowSample* samples = &windows[threadIdx.x / kWarpSize].samples[0][lane];
-  const RefPatch patch = RefPatchAt(problem, pixel.col, pixel.row);
-  StoreWindow(patch, samples, kWarpSize);
-  const Window window = {
-      samples, kWarpSize, patch.center, patch.mean, patch.variance};
-  const LaneCost<Sampler> cost(problem, window, pixel.col, pixel.row);
-  const size_t at = static_cast<size_t>(pixel.row) * state.width + pixel.col;
-  const Plane plane = state.planes[at];
-  for (int view = 0; view < problem.params.num_views; ++view) {
-    const uint8_t views[1] = {static_cast<uint8_t>(view)};
-    cost.Photometric(
-        &plane, 1, views, 1, &costs[at * problem.params.num_views + view]);
-  }
+  const size_t i = static_cast<size_t>(blockIdx.x) * blockDim.x + threadIdx.x;
+  if (i >= num_planes) return;
+  const PixelPlane at = planes[i];
+  const Window window =
+      WindowAt(problem, &windows[threadIdx.x / kWarpSize], at.col, at.row);
+  const LaneCost<Sampler> cost(problem, window, at.col, at.row);
+  costs[i] = CostFromAllViews(problem.params, cost, at.plane);
 }
 
 template <class Sampler>
@@ -131,13 +125,12 @@ void LaunchSweepWith(const SweepLaunch& launch, cudaStream_t stream) {
 }
 
 template <class Sampler>
-void LaunchCostsWith(const SweepLaunch& launch,
-                     float* costs,
-                     cudaStream_t stream) {
-  const unsigned blocks = static_cast<unsigned>(
-      (launch.band.num_warps() + kWarpsPerBlock - 1) / kWarpsPerBlock);
-  CostsOfPlanes<Sampler><<<blocks, kWarpsPerBlock * kWarpSize, 0, stream>>>(
-      *launch.problem, launch.state, launch.band, costs);
+void LaunchScoreWith(const ScoreLaunch& launch, cudaStream_t stream) {
+  constexpr int kBlock = kWarpsPerBlock * kWarpSize;
+  const unsigned blocks =
+      static_cast<unsigned>((launch.num_planes + kBlock - 1) / kBlock);
+  ScoreKernel<Sampler><<<blocks, kBlock, 0, stream>>>(
+      *launch.problem, launch.planes, launch.num_planes, launch.costs);
   CheckCuda(cudaGetLastError(), "starting a kernel");
 }
 

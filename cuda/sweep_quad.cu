@@ -6,10 +6,8 @@ void LaunchQuadSweep(const SweepLaunch& launch, cudaStream_t stream) {
   LaunchSweepWith<QuadSampler>(launch, stream);
 }
 
-void LaunchQuadCosts(const SweepLaunch& launch,
-                     float* costs,
-                     cudaStream_t stream) {
-  LaunchCostsWith<QuadSampler>(launch, costs, stream);
+void LaunchQuadScore(const ScoreLaunch& launch, cudaStream_t stream) {
+  LaunchScoreWith<QuadSampler>(launch, stream);
 }
 
 }  // namespace hpm

@@ -6,10 +6,8 @@ void LaunchTextureSweep(const SweepLaunch& launch, cudaStream_t stream) {
   LaunchSweepWith<TextureSampler>(launch, stream);
 }
 
-void LaunchTextureCosts(const SweepLaunch& launch,
-                        float* costs,
-                        cudaStream_t stream) {
-  LaunchCostsWith<TextureSampler>(launch, costs, stream);
+void LaunchTextureScore(const ScoreLaunch& launch, cudaStream_t stream) {
+  LaunchScoreWith<TextureSampler>(launch, stream);
 }
 
 }  // namespace hpm

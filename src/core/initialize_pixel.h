@@ -13,15 +13,13 @@ enum class StartFrom {
   kStored,   // the stored hypothesis at its stored cost: nothing to do
   kCurrent,  // the stored hypothesis
   kMissing,  // as kStored; a random one where none is stored
-  kScore,    // the stored hypothesis in all views; nothing where there is none
   kPrior,    // the prior, slightly perturbed, where there is one and the stored
              // cost is not convincing; else the stored hypothesis
 };
 
 // Whether the start computes anything at a pixel with this stored hypothesis.
 HPM_HD bool StartsAt(StartFrom start, const Plane& stored) {
-  if (start == StartFrom::kMissing) return !(stored.distance > 0);
-  return start != StartFrom::kScore || stored.distance > 0;
+  return start != StartFrom::kMissing || !(stored.distance > 0);
 }
 
 constexpr float kConvincingCost = 0.1f;
@@ -103,7 +101,7 @@ struct PixelPlane {
   Plane plane;
 };
 
-// What StartFrom::kScore computes; `cost` is that of the plane's pixel.
+// `cost` is that of the pixel.
 template <class Cost>
 HPM_HD float CostFromAllViews(const VisitParams& params,
                               const Cost& cost,

@@ -106,8 +106,6 @@ class CpuBackend : public Backend {
   }
 
   std::vector<float> Score(const std::vector<PixelPlane>& planes,
-                           int /*width*/,
-                           int /*height*/,
                            const RunControl& control) override {
     std::vector<float> costs(planes.size());
     arena_.execute([&] {

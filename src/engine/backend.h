@@ -51,13 +51,9 @@ class Backend {
                    HypothesisMap* map,
                    const RunControl& control) = 0;
 
-  // The matching cost of every plane at its pixel of an image of this size,
-  // from all views. Unless a backend knows better, by passes over maps that
-  // hold nothing else.
+  // The matching cost of every plane at its pixel, from all views.
   virtual std::vector<float> Score(const std::vector<PixelPlane>& planes,
-                                   int width,
-                                   int height,
-                                   const RunControl& control);
+                                   const RunControl& control) = 0;
 
   // Bit j of the result: source view j is consistent with the pixel's plane.
   virtual std::vector<uint32_t> ConsistentViews(const HypothesisMap& map,

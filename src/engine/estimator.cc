@@ -120,8 +120,7 @@ void RunStage(Backend* backend,
           *map,
           pass.id,
           [&](const std::vector<PixelPlane>& planes) {
-            return backend->Score(
-                planes, map->width, map->height, {control.cancel, nullptr});
+            return backend->Score(planes, {control.cancel, nullptr});
           });
       map->priors = std::move(mined.priors);
       map->unexplained = std::move(mined.unexplained);

@@ -111,8 +111,6 @@ TEST(StartsAt, MissingAndScoreAreEachOthersComplement) {
   const Plane none = {{0, 0, 0}, 0}, some = {{0, 0, -1}, 3};
   EXPECT_TRUE(StartsAt(StartFrom::kMissing, none));
   EXPECT_FALSE(StartsAt(StartFrom::kMissing, some));
-  EXPECT_FALSE(StartsAt(StartFrom::kScore, none));
-  EXPECT_TRUE(StartsAt(StartFrom::kScore, some));
   EXPECT_TRUE(StartsAt(StartFrom::kRandom, none));
   EXPECT_TRUE(StartsAt(StartFrom::kCurrent, none));
 }

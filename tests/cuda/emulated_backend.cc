@@ -39,45 +39,42 @@ void ForEachPixel(const Band& band, const VisitOne& visit) {
   }
 }
 
-template <SweepKind kKind>
-uint64_t RunCore(const Launch& launch) {
-  uint64_t evaluations = 0;
-  ForEachPixel(launch.band, [&](const Pixel& pixel) {
-    const RefPatch patch = RefPatchAt(launch.problem, pixel.col, pixel.row);
-    const CoreCost cost(launch.problem, patch, pixel.col, pixel.row);
-    Visit<kKind>(launch, cost, pixel);
-    evaluations += cost.num_evaluations();
-  });
-  return evaluations;
-}
-
-template <SweepKind kKind, class Sampler>
-uint64_t RunOnLanes(const Launch& launch) {
-  uint64_t evaluations = 0;
-  ForEachPixel(launch.band, [&](const Pixel& pixel) {
-    WindowSample samples[kPatchSize];
-    const RefPatch patch = RefPatchAt(launch.problem, pixel.col, pixel.row);
-    StoreWindow(patch, samples, 1);
-    const Window window = {
-        samples, 1, patch.center, patch.mean, patch.variance};
-    const LaneCost<Sampler> cost(launch.problem, window, pixel.col, pixel.row);
-    Visit<kKind>(launch, cost, pixel);
-    evaluations += cost.num_evaluations();
-  });
-  return evaluations;
-}
-
-template <SweepKind kKind>
-uint64_t RunWith(EmulatedCost cost, const Launch& launch) {
-  switch (cost) {
+// Calls use(cost) with the Cost of a pixel; returns its evaluations.
+template <class Use>
+uint64_t WithCost(EmulatedCost kind,
+                  const DeviceProblem& problem,
+                  int col,
+                  int row,
+                  const Use& use) {
+  const RefPatch patch = RefPatchAt(problem, col, row);
+  WindowSample samples[kPatchSize];
+  StoreWindow(patch, samples, 1);
+  const Window window = {samples, 1, patch.center, patch.mean, patch.variance};
+  const auto counted = [&](const auto& cost) {
+    use(cost);
+    return static_cast<uint64_t>(cost.num_evaluations());
+  };
+  switch (kind) {
     case EmulatedCost::kCore:
-      return RunCore<kKind>(launch);
+      return counted(CoreCost(problem, patch, col, row));
     case EmulatedCost::kQuad:
-      return RunOnLanes<kKind, QuadSampler>(launch);
+      return counted(LaneCost<QuadSampler>(problem, window, col, row));
     case EmulatedCost::kTexture:
       break;
   }
-  return RunOnLanes<kKind, TextureSampler>(launch);
+  return counted(LaneCost<TextureSampler>(problem, window, col, row));
+}
+
+template <SweepKind kKind>
+uint64_t RunWith(EmulatedCost kind, const Launch& launch) {
+  uint64_t evaluations = 0;
+  ForEachPixel(launch.band, [&](const Pixel& pixel) {
+    evaluations += WithCost(
+        kind, launch.problem, pixel.col, pixel.row, [&](const auto& cost) {
+          Visit<kKind>(launch, cost, pixel);
+        });
+  });
+  return evaluations;
 }
 
 }  // namespace
@@ -188,6 +185,19 @@ std::vector<uint32_t> EmulatedBackend::ConsistentViews(
     RunSweep(sweep, copy.View(), consistent.data());
   }
   return consistent;
+}
+
+std::vector<float> EmulatedBackend::Score(const std::vector<PixelPlane>& planes,
+                                          const RunControl&) {
+  std::vector<float> costs;
+  for (const PixelPlane& at : planes) {
+    num_evaluations_ += WithCost(
+        options_.cost, tables_.problem, at.col, at.row, [&](const auto& cost) {
+          costs.push_back(
+              CostFromAllViews(tables_.problem.params, cost, at.plane));
+        });
+  }
+  return costs;
 }
 
 }  // namespace hpm

@@ -40,6 +40,8 @@ class EmulatedBackend : public Backend {
                                         const FilterParams& filter,
                                         bool geometric,
                                         const RunControl& control) override;
+  std::vector<float> Score(const std::vector<PixelPlane>& planes,
+                           const RunControl& control) override;
   uint64_t num_cost_evaluations() const override { return num_evaluations_; }
 
   const DeviceProblem& problem() const { return tables_.problem; }

@@ -54,6 +54,10 @@ class MadeUpGpu : public Backend {
     }
     *map = solved;
   }
+  std::vector<float> Score(const std::vector<PixelPlane>& planes,
+                           const RunControl& control) override {
+    return cpu_->Score(planes, control);
+  }
   std::vector<uint32_t> ConsistentViews(const HypothesisMap& map,
                                         const FilterParams& filter,
                                         bool geometric,

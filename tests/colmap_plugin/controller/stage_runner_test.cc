@@ -33,6 +33,10 @@ class RecordingBackend : public Backend {
     calls.emplace_back("run");
     cpu_->Run(pass, pattern, map, control);
   }
+  std::vector<float> Score(const std::vector<PixelPlane>& planes,
+                           const RunControl& control) override {
+    return cpu_->Score(planes, control);
+  }
   std::vector<uint32_t> ConsistentViews(const HypothesisMap& map,
                                         const FilterParams& filter,
                                         bool geometric,
