@@ -167,10 +167,10 @@ std::shared_ptr<const InverseDepthMap> InputCache::InverseDepth(
   const auto load = [&]() -> Input {
     try {
       return std::make_shared<const InverseDepthMap>(
-          InverseDepthMap::Of(ReadInverseDepths(request.files.depth,
-                                                request.files.normal,
-                                                request.camera,
-                                                request.more_levels)));
+          ReadInverseDepths(request.files.depth,
+                            request.files.normal,
+                            request.camera,
+                            request.more_levels));
     } catch (const Error&) {
       return nullptr;
     }

@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -153,16 +154,16 @@ HypothesisMap StageRunner::StartMap(int stage,
   }
   const int image = problems_[problem].ref_image;
   const StageFiles files = plan_.Files(stage - 1, image);
-  HypothesisMap previous = ReadHypotheses(
+  std::vector<Plane> planes = ReadPlanes(
       files.depth, files.normal, plan_.CameraOf(stage - 1, image));
-  if (spec.geometric) return previous;
-  HypothesisMap map(camera.width, camera.height);
-  map.planes = UpsamplePrior(previous.planes,
-                             1,
-                             camera,
-                             *views.ref.image,
-                             {views.depth_min, views.depth_max});
-  return map;
+  if (!spec.geometric) {
+    planes = UpsamplePrior(planes,
+                           1,
+                           camera,
+                           *views.ref.image,
+                           {views.depth_min, views.depth_max});
+  }
+  return HypothesisMap(camera.width, camera.height, std::move(planes));
 }
 
 void StageRunner::Publish(int stage,
