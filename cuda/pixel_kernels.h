@@ -79,6 +79,7 @@ HPM_HD Plane UpsampledPriorAt(const DeviceProblem& problem,
       [&](int c, int r) {
         return problem.ref_grey[static_cast<size_t>(r) * width + c];
       },
+      [](float dx, float dy) { return UpsampleSpatialWeight(dx, dy); },
       [](int d) { return UpsampleColorWeight(d); },
       problem.params.depth_min,
       problem.params.depth_max,

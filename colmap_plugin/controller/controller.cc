@@ -202,6 +202,7 @@ RunSummary PatchMatchController::Run() {
              CpuImagesInFlight(needs, num_threads, MemoryLimit()) > 1) {
     cpus.push_back(MakeCpuBackend(target, num_threads));
   }
+  const int num_decodes = DecodesAtOnce(needs);
   const size_t num_in_flight = std::max(cpus.size(), gpus.size());
   needs.working *= num_in_flight;
   needs.inputs *= num_in_flight;
@@ -210,7 +211,8 @@ RunSummary PatchMatchController::Run() {
                     PlanCacheBytes(CacheBytes(options_.patch_match.cache_size),
                                    needs.working,
                                    needs.inputs,
-                                   MemoryLimit()));
+                                   MemoryLimit()),
+                    num_decodes);
   log_(LogLevel::kInfo,
        fmt::format("{}{}, method {}, about {} MB of memory",
                    backend_name,

@@ -4,72 +4,185 @@
 #include "src/image/load_image.h"
 #include "src/image/shrink_image.h"
 
+#include <algorithm>
+#include <exception>
 #include <utility>
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 namespace hpm {
 namespace {
 
-enum class Input { kImage, kDepth };
+enum class Kind { kImage, kDepth };
 
-int64_t KeyOf(Input input, int image, int more_levels) {
-  constexpr int64_t kLevels = 32;
-  return 2 * (kLevels * image + more_levels) + (input == Input::kDepth);
+constexpr int64_t kLevels = 32;
+
+int64_t KeyOf(Kind kind, int image, int level) {
+  return 2 * (kLevels * image + level) + (kind == Kind::kDepth);
 }
+
+bool IsDepth(int64_t key) { return key % 2 != 0; }
+int LevelOf(int64_t key) { return static_cast<int>(key / 2 % kLevels); }
 
 }  // namespace
 
-InputCache::InputCache(const Workspace& workspace, uint64_t max_bytes)
-    : workspace_(workspace), inputs_(max_bytes) {}
+InputCache::InputCache(const Workspace& workspace,
+                       uint64_t max_bytes,
+                       int max_decodes)
+    : workspace_(workspace), max_decodes_(max_decodes), inputs_(max_bytes) {}
 
-std::shared_ptr<const GrayImage> InputCache::Image(int image, int more_levels) {
-  int level;
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (auto cached = inputs_.Find(KeyOf(Input::kImage, image, more_levels)))
-      return std::static_pointer_cast<const GrayImage>(cached);
-    level = level_ + more_levels;
+std::vector<std::shared_ptr<const GrayImage>> InputCache::Images(
+    const std::vector<ImageRequest>& requests) {
+  std::vector<std::shared_ptr<const GrayImage>> images(requests.size());
+  const auto get = [&](size_t i, IfLoading if_loading) {
+    images[i] = Image(requests[i].image,
+                      level_ + requests[i].more_levels,
+                      if_loading,
+                      Keep::kUsed);
+  };
+  // First what nobody else is loading, so that several callers share the work.
+  tbb::task_arena arena(
+      std::min(max_decodes_, tbb::this_task_arena::max_concurrency()));
+  arena.execute([&] {
+    tbb::parallel_for(size_t{0}, requests.size(), [&](size_t i) {
+      try {
+        get(i, IfLoading::kSkip);
+      } catch (const UnreadableImage&) {
+        // Thrown below, where it does not depend on the threads which is first.
+      }
+    });
+  });
+  for (size_t i = 0; i < requests.size(); ++i) {
+    if (images[i] == nullptr) get(i, IfLoading::kWait);
   }
-  try {
-    const Camera& camera = workspace_.camera(image);
-    GrayImage full = LoadGrayImage(workspace_.ImagePath(image),
-                                   camera.width,
-                                   camera.height,
-                                   workspace_.Decoding(image));
-    auto loaded = std::make_shared<const GrayImage>(
-        level == 0 ? std::move(full) : ShrinkImage(full, level));
-    const std::lock_guard<std::mutex> lock(mutex_);
-    inputs_.Insert(
-        KeyOf(Input::kImage, image, more_levels), loaded, loaded->data.size());
-    return loaded;
-  } catch (const Error& error) {
-    throw UnreadableImage(image, error.what());
-  }
+  return images;
 }
 
-std::shared_ptr<const InverseDepthMap> InputCache::InverseDepth(
-    int image, const Camera& camera, const StageFiles& files, int more_levels) {
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (auto cached = inputs_.Find(KeyOf(Input::kDepth, image, more_levels)))
-      return std::static_pointer_cast<const InverseDepthMap>(cached);
+std::vector<std::shared_ptr<const InverseDepthMap>> InputCache::InverseDepths(
+    const std::vector<DepthRequest>& requests) {
+  std::vector<std::shared_ptr<const InverseDepthMap>> maps(requests.size());
+  // One after the other: all threads share the pixels of one.
+  for (const IfLoading if_loading : {IfLoading::kSkip, IfLoading::kWait}) {
+    for (size_t i = 0; i < requests.size(); ++i) {
+      if (maps[i] == nullptr) maps[i] = InverseDepth(requests[i], if_loading);
+    }
   }
-  try {
-    auto inverse = std::make_shared<const InverseDepthMap>(InverseDepthMap::Of(
-        ReadInverseDepths(files.depth, files.normal, camera, more_levels)));
-    const std::lock_guard<std::mutex> lock(mutex_);
-    inputs_.Insert(KeyOf(Input::kDepth, image, more_levels),
-                   inverse,
-                   inverse->steps.size());
-    return inverse;
-  } catch (const Error&) {
-    return nullptr;
-  }
+  return maps;
 }
 
 void InputCache::StartStage(int level) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  inputs_.Clear();
+  inputs_.EraseIf([&](Key key) {
+    return IsDepth(key) || (level != level_ && LevelOf(key) > 0);
+  });
   level_ = level;
+}
+
+InputCache::Input InputCache::Get(
+    Key key,
+    IfLoading if_loading,
+    Keep keep,
+    const std::function<Input()>& load,
+    const std::function<uint64_t(const Input&)>& bytes_of) {
+  std::promise<Input> promise;
+  {
+    std::unique_lock<std::mutex> lock(mutex_);
+    if (Input cached =
+            keep == Keep::kUsed ? inputs_.Find(key) : inputs_.Peek(key)) {
+      return cached;
+    }
+    const auto [it, is_new] =
+        loading_.try_emplace(key, std::shared_future<Input>());
+    if (!is_new) {
+      if (if_loading == IfLoading::kSkip) return nullptr;
+      const std::shared_future<Input> loading = it->second;
+      lock.unlock();
+      return loading.get();
+    }
+    it->second = promise.get_future().share();
+  }
+  Input input;
+  std::exception_ptr failure;
+  try {
+    // A thread that waits for others within must not begin to load something
+    // else: that could wait for this.
+    tbb::this_task_arena::isolate([&] { input = load(); });
+  } catch (...) {
+    failure = std::current_exception();
+  }
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    loading_.erase(key);
+    if (input != nullptr) {
+      const uint64_t num_bytes = bytes_of(input);
+      if (keep == Keep::kUsed) {
+        inputs_.Insert(key, input, num_bytes);
+      } else {
+        inputs_.InsertSpare(key, input, num_bytes);
+      }
+    }
+  }
+  if (failure != nullptr) {
+    promise.set_exception(failure);
+    std::rethrow_exception(failure);
+  }
+  promise.set_value(input);
+  return input;
+}
+
+std::shared_ptr<const GrayImage> InputCache::Image(int image,
+                                                   int level,
+                                                   IfLoading if_loading,
+                                                   Keep keep) {
+  const auto load = [&]() -> Input {
+    if (level > 0) {
+      // Kept if there is room: finer levels need it, too.
+      return std::make_shared<const GrayImage>(
+          ShrinkImage(*Image(image, 0, IfLoading::kWait, Keep::kSpare), level));
+    }
+    const Camera& camera = workspace_.camera(image);
+    try {
+      return std::make_shared<const GrayImage>(
+          LoadGrayImage(workspace_.ImagePath(image),
+                        camera.width,
+                        camera.height,
+                        workspace_.Decoding(image)));
+    } catch (const Error& error) {
+      throw UnreadableImage(image, error.what());
+    }
+  };
+  return std::static_pointer_cast<const GrayImage>(
+      Get(KeyOf(Kind::kImage, image, level),
+          if_loading,
+          keep,
+          load,
+          [](const Input& input) {
+            return static_cast<const GrayImage*>(input.get())->data.size();
+          }));
+}
+
+std::shared_ptr<const InverseDepthMap> InputCache::InverseDepth(
+    const DepthRequest& request, IfLoading if_loading) {
+  const auto load = [&]() -> Input {
+    try {
+      return std::make_shared<const InverseDepthMap>(
+          ReadInverseDepths(request.files.depth,
+                            request.files.normal,
+                            request.camera,
+                            request.more_levels));
+    } catch (const Error&) {
+      return nullptr;
+    }
+  };
+  return std::static_pointer_cast<const InverseDepthMap>(Get(
+      KeyOf(Kind::kDepth, request.image, request.more_levels),
+      if_loading,
+      Keep::kUsed,
+      load,
+      [](const Input& input) {
+        return static_cast<const InverseDepthMap*>(input.get())->steps.size();
+      }));
 }
 
 }  // namespace hpm

@@ -1,5 +1,6 @@
 // Images and depth maps of the workspace, read when needed and kept within a
-// bound. All methods may be called from several threads.
+// bound. All methods may be called from several threads; none reads what
+// another is reading already.
 #pragma once
 
 #include "colmap_plugin/controller/stages.h"
@@ -8,9 +9,13 @@
 #include "src/image/gray_image.h"
 #include "src/image/inverse_depth_map.h"
 
+#include <functional>
+#include <future>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
+#include <vector>
 
 namespace hpm {
 
@@ -26,31 +31,65 @@ class UnreadableImage : public Error {
   int image_;
 };
 
+// At the size of the camera, halved as the stage wants it and `more_levels`
+// times more.
+struct ImageRequest {
+  int image = 0;
+  int more_levels = 0;
+};
+
+// 1/z of an image's maps, of the camera's size, at the pixel centres of the
+// camera halved `more_levels` times.
+struct DepthRequest {
+  int image = 0;
+  Camera camera;
+  StageFiles files;
+  int more_levels = 0;
+};
+
 class InputCache {
  public:
-  InputCache(const Workspace& workspace, uint64_t max_bytes);
+  // max_decodes: files that one caller may decode at once.
+  InputCache(const Workspace& workspace, uint64_t max_bytes, int max_decodes);
 
-  // At the size of the camera, halved as the stage wants it and `more_levels`
-  // times more. Throws UnreadableImage.
-  std::shared_ptr<const GrayImage> Image(int image, int more_levels = 0);
+  // As many as there are requests. Throws UnreadableImage.
+  std::vector<std::shared_ptr<const GrayImage>> Images(
+      const std::vector<ImageRequest>& requests);
 
-  // 1/z of an image's maps, of the camera's size, at the pixel centres of the
-  // camera halved `more_levels` times; null if they are absent or damaged.
-  std::shared_ptr<const InverseDepthMap> InverseDepth(int image,
-                                                      const Camera& camera,
-                                                      const StageFiles& files,
-                                                      int more_levels = 0);
+  // Null where the maps are absent or damaged.
+  std::vector<std::shared_ptr<const InverseDepthMap>> InverseDepths(
+      const std::vector<DepthRequest>& requests);
 
-  // Forgets the inputs of the stage before; images are halved `level` times
+  // Forgets the depth maps of the stage before; images are halved `level` times
   // from now on.
   void StartStage(int level);
 
  private:
+  using Input = std::shared_ptr<const void>;  // GrayImage or InverseDepthMap
+  using Key = int64_t;                        // see KeyOf
+  enum class IfLoading { kWait, kSkip };      // what another thread is loading
+  enum class Keep { kUsed, kSpare };
+
+  // What `load` returns or the cache has; null if it is skipped.
+  Input Get(Key key,
+            IfLoading if_loading,
+            Keep keep,
+            const std::function<Input()>& load,
+            const std::function<uint64_t(const Input&)>& bytes_of);
+  std::shared_ptr<const GrayImage> Image(int image,
+                                         int level,
+                                         IfLoading if_loading,
+                                         Keep keep);
+  std::shared_ptr<const InverseDepthMap> InverseDepth(
+      const DepthRequest& request, IfLoading if_loading);
+
   const Workspace& workspace_;
+  const int max_decodes_;
+  int level_ = 0;
   // Held to look up and to keep, not to read: threads decode side by side.
   std::mutex mutex_;
-  int level_ = 0;
-  LruCache<int64_t, void> inputs_;  // GrayImage or InverseDepthMap; see KeyOf
+  LruCache<Key, void> inputs_;
+  std::map<Key, std::shared_future<Input>> loading_;
 };
 
 }  // namespace hpm

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+
+#include <tbb/parallel_for.h>
 
 namespace hpm {
 namespace {
@@ -11,52 +14,70 @@ namespace {
 // Where COLMAP's ray of (col, row) meets the library's pixel grid.
 constexpr float kColmapShift = -0.5f;
 
-struct MapPair {
-  const Map& depth;
-  const Map& normal;
-};
-
-// visit(i, plane, z) for every pixel with a depth; z is that of the plane at
-// the pixel's centre.
-template <class Visit>
-void ForEachPlane(const MapPair& maps,
-                  const Camera& camera,
-                  const Visit& visit) {
-  const std::vector<float>& normal = maps.normal.data;
-  const size_t size = maps.depth.data.size();
-  for (int row = 0; row < camera.height; ++row) {
-    for (int col = 0; col < camera.width; ++col) {
-      const size_t i = static_cast<size_t>(row) * camera.width + col;
-      const float depth = maps.depth.data[i];
-      if (!(depth > 0)) continue;
-      const Plane plane =
-          PlaneFromDepth(camera,
-                         static_cast<float>(col) + kColmapShift,
-                         static_cast<float>(row) + kColmapShift,
-                         depth,
-                         {normal[i], normal[size + i], normal[2 * size + i]});
-      const float z = DepthAt(
-          camera, plane, static_cast<float>(col), static_cast<float>(row));
-      if (std::isfinite(z) && z > 0 && plane.distance > 0) visit(i, plane, z);
-    }
+// The files of an image, in bands of rows: neither is ever in memory as a whole.
+class MapPair {
+ public:
+  MapPair(const std::filesystem::path& depth_path,
+          const std::filesystem::path& normal_path,
+          const Camera& camera)
+      : depth_(depth_path), normal_(normal_path), camera_(camera) {
+    CheckSize(depth_, 1);
+    CheckSize(normal_, 3);
   }
-}
 
-DepthAndNormal ReadMaps(const std::filesystem::path& depth_path,
-                        const std::filesystem::path& normal_path,
-                        const Camera& camera) {
-  const auto read = [&](const std::filesystem::path& path, int channels) {
-    Map map = ReadMap(path);
-    if (map.width != camera.width || map.height != camera.height ||
-        map.channels != channels) {
-      throw Error(ErrorCode::kBadInput,
-                  path.string() +
-                      ": not the size of its image; delete it and run again");
+  // visit(col, row, plane, z) for every pixel, by several threads; z is that of
+  // the plane at the pixel's centre, the distance 0 where there is no depth.
+  template <class Visit>
+  void ForEachPlane(const Visit& visit) const {
+    constexpr int kBandPixels = 1 << 14;
+    const int width = camera_.width;
+    const int height = camera_.height;
+    const int band_rows = std::clamp(kBandPixels / width, 1, height);
+    const int num_bands = (height + band_rows - 1) / band_rows;
+    tbb::parallel_for(0, num_bands, [&](int band) {
+      const int begin = band * band_rows;
+      const int num_rows = std::min(band_rows, height - begin);
+      const size_t size = static_cast<size_t>(num_rows) * width;
+      std::vector<float> values(4 * size);
+      depth_.ReadRows(0, begin, num_rows, values.data());
+      for (int axis = 0; axis < 3; ++axis)
+        normal_.ReadRows(axis, begin, num_rows, &values[(1 + axis) * size]);
+      const float* at = values.data();
+      for (int row = begin; row < begin + num_rows; ++row) {
+        for (int col = 0; col < width; ++col, ++at) {
+          const Vec3f normal = {at[size], at[2 * size], at[3 * size]};
+          Plane plane = PlaneFromDepth(camera_,
+                                       static_cast<float>(col) + kColmapShift,
+                                       static_cast<float>(row) + kColmapShift,
+                                       at[0],
+                                       normal);
+          const float z = DepthAt(camera_,
+                                  plane,
+                                  static_cast<float>(col),
+                                  static_cast<float>(row));
+          if (!(at[0] > 0 && std::isfinite(z) && z > 0 && plane.distance > 0))
+            plane = {{0, 0, 0}, 0};
+          visit(col, row, plane, z);
+        }
+      }
+    });
+  }
+
+ private:
+  void CheckSize(const MapReader& reader, int channels) const {
+    const MapHeader& header = reader.header();
+    if (header.width == camera_.width && header.height == camera_.height &&
+        header.channels == channels) {
+      return;
     }
-    return map;
-  };
-  return {read(depth_path, 1), read(normal_path, 3)};
-}
+    throw Error(ErrorCode::kBadInput,
+                reader.path().string() +
+                    ": not the size of its image; delete it and run again");
+  }
+
+  MapReader depth_, normal_;
+  const Camera& camera_;
+};
 
 }  // namespace
 
@@ -100,29 +121,22 @@ size_t DropOutside(const DepthRange& range, DepthAndNormal* maps) {
   return num_dropped;
 }
 
-HypothesisMap FromColmapMaps(const Map& depth,
-                             const Map& normal,
-                             const Camera& camera) {
-  HypothesisMap map(camera.width, camera.height);
-  ForEachPlane(
-      {depth, normal}, camera, [&](size_t i, const Plane& plane, float) {
-        map.planes[i] = plane;
-      });
-  return map;
+std::vector<Plane> ReadPlanes(const std::filesystem::path& depth_path,
+                              const std::filesystem::path& normal_path,
+                              const Camera& camera) {
+  const MapPair maps(depth_path, normal_path, camera);
+  std::vector<Plane> planes(static_cast<size_t>(camera.width) * camera.height);
+  maps.ForEachPlane([&](int col, int row, const Plane& plane, float) {
+    planes[static_cast<size_t>(row) * camera.width + col] = plane;
+  });
+  return planes;
 }
 
-HypothesisMap ReadHypotheses(const std::filesystem::path& depth_path,
-                             const std::filesystem::path& normal_path,
-                             const Camera& camera) {
-  const DepthAndNormal maps = ReadMaps(depth_path, normal_path, camera);
-  return FromColmapMaps(maps.depth, maps.normal, camera);
-}
-
-std::vector<float> ReadInverseDepths(const std::filesystem::path& depth_path,
-                                     const std::filesystem::path& normal_path,
-                                     const Camera& camera,
-                                     int more_levels) {
-  const DepthAndNormal maps = ReadMaps(depth_path, normal_path, camera);
+InverseDepthMap ReadInverseDepths(const std::filesystem::path& depth_path,
+                                  const std::filesystem::path& normal_path,
+                                  const Camera& camera,
+                                  int more_levels) {
+  const MapPair maps(depth_path, normal_path, camera);
   const int factor = 1 << more_levels;
   const Camera coarse = LevelCamera(camera, more_levels);
   const auto middle_of = [&](int block, int size) {
@@ -132,27 +146,22 @@ std::vector<float> ReadInverseDepths(const std::filesystem::path& depth_path,
     return (static_cast<float>(block) + 0.5f) * static_cast<float>(factor) -
            0.5f;
   };
-  std::vector<float> inverse(static_cast<size_t>(coarse.width) * coarse.height,
-                             0.0f);
-  ForEachPlane(
-      {maps.depth, maps.normal},
-      camera,
-      [&](size_t i, const Plane& plane, float) {
-        const int row = static_cast<int>(i / camera.width);
-        const int col = static_cast<int>(i % camera.width);
-        const int block_row = row / factor;
-        const int block_col = col / factor;
-        if (row != middle_of(block_row, camera.height) ||
-            col != middle_of(block_col, camera.width)) {
-          return;
-        }
-        const float z =
-            DepthAt(camera, plane, center_of(block_col), center_of(block_row));
-        if (!std::isfinite(z) || !(z > 0)) return;
-        inverse[static_cast<size_t>(block_row) * coarse.width + block_col] =
-            1 / z;
-      });
-  return inverse;
+  const size_t size = static_cast<size_t>(coarse.width) * coarse.height;
+  // Not filled here: each pixel has one in its middle.
+  const std::unique_ptr<float[]> inverse(new float[size]);
+  maps.ForEachPlane([&](int col, int row, const Plane& plane, float z) {
+    const int block_row = row / factor;
+    const int block_col = col / factor;
+    if (row != middle_of(block_row, camera.height) ||
+        col != middle_of(block_col, camera.width)) {
+      return;
+    }
+    if (factor > 1)
+      z = DepthAt(camera, plane, center_of(block_col), center_of(block_row));
+    inverse[static_cast<size_t>(block_row) * coarse.width + block_col] =
+        plane.distance > 0 && std::isfinite(z) && z > 0 ? 1 / z : 0;
+  });
+  return InverseDepthMap::Of(inverse.get(), size);
 }
 
 }  // namespace hpm

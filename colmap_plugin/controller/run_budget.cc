@@ -49,6 +49,7 @@ MemoryNeeds LargestNeeds(const Workspace& workspace,
         maps_being_written + decoded;
     needs.working = std::max(needs.working, working);
     needs.inputs = std::max(needs.inputs, inputs);
+    needs.decoding = std::max(needs.decoding, decoded);
   }
   return needs;
 }
@@ -76,6 +77,15 @@ int ImagesInMemory(const MemoryNeeds& needs, int most, uint64_t limit) {
   int count = std::max(most, 1);
   while (count > 1 && needs.inputs + count * needs.working > limit / 2) --count;
   return count;
+}
+
+int DecodesAtOnce(const MemoryNeeds& needs) {
+  // Decoders of progressive files take about twice as much again.
+  constexpr uint64_t kWithDecoder = 3;
+  constexpr uint64_t kMost = 8;
+  const uint64_t fit =
+      needs.working / std::max<uint64_t>(kWithDecoder * needs.decoding, 1);
+  return static_cast<int>(std::clamp<uint64_t>(fit, 1, kMost));
 }
 
 int CpuImagesInFlight(const MemoryNeeds& needs,

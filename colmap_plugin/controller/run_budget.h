@@ -12,9 +12,10 @@ namespace hpm {
 
 // Largest need over all problems, in bytes.
 struct MemoryNeeds {
-  uint64_t working = 0;  // per image in flight: of the backend, the maps being
-                         // written, and the decoder of one file
-  uint64_t inputs = 0;   // images and depth maps of one problem
+  uint64_t working = 0;   // per image in flight: of the backend, the maps being
+                          // written, and the decoder of one file
+  uint64_t inputs = 0;    // images and depth maps of one problem
+  uint64_t decoding = 0;  // of `working`: the decoder
 };
 
 // While the image's file is decoded, at the scale it is decoded at.
@@ -33,6 +34,10 @@ ProblemSize LargestProblem(const Workspace& workspace,
 // How many of `most` images may be worked on at once within `limit` bytes; at
 // least 1.
 int ImagesInMemory(const MemoryNeeds& needs, int most, uint64_t limit);
+
+// How many files an image in flight may decode at once: while it reads, what it
+// needs to match and to write is free.
+int DecodesAtOnce(const MemoryNeeds& needs);
 
 // 2 where many threads would wait while one image is read or written and a
 // second costs little memory. Else 1.

@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -99,37 +100,52 @@ ViewSet StageRunner::MakeViews(int stage, int problem) {
   const std::string& name = workspace_.ImageName(p.ref_image);
   ViewSet views;
   const StageSpec& spec = plan_.stages()[stage].spec;
-  views.ref = {
-      plan_.CameraOf(stage, p.ref_image), inputs_->Image(p.ref_image), nullptr};
+  src_images_.clear();
+  if (!spec.passes.empty()) src_images_ = p.src_images;  // else none is matched
+  std::vector<ImageRequest> images = {{p.ref_image, 0}};
+  for (const int src : src_images_)
+    images.push_back({src, SourceLevel(workspace_, p, src)});
+  const auto pictures = inputs_->Images(images);
+  views.ref = {plan_.CameraOf(stage, p.ref_image), pictures.front(), nullptr};
   views.depth_min = kDepthMinSlack * p.depth_min;
   views.depth_max = kDepthMaxSlack * p.depth_max;
   views.random_key = RandomKey(options_.random_seed, name);
-  src_images_.clear();
+  for (size_t j = 1; j < images.size(); ++j) {
+    const auto [src, level] = images[j];
+    views.srcs.push_back({plan_.CameraAround(stage, src, p.ref_image, level),
+                          pictures[j],
+                          nullptr});
+  }
   num_without_maps_ = 0;
   misses_maps_ = stage > 0 && !plan_.HasCompleteMaps(stage - 1, p.ref_image);
-  if (spec.passes.empty()) return views;  // nothing is matched
-  for (const int src : p.src_images) {
-    const int level = SourceLevel(workspace_, p, src);
-    View view = {plan_.CameraAround(stage, src, p.ref_image, level),
-                 inputs_->Image(src, level),
-                 nullptr};
-    if (spec.geometric) {
-      if (plan_.HasCurrentMaps(stage - 1, src)) {
-        view.inverse_depth = inputs_->InverseDepth(src,
-                                                   plan_.CameraOf(stage, src),
-                                                   plan_.Files(stage - 1, src),
-                                                   level);
-      }
-      if (view.inverse_depth == nullptr) ++num_without_maps_;
-      if (plan_.HasProblem(src) && (view.inverse_depth == nullptr ||
-                                    !plan_.HasCompleteMaps(stage - 1, src))) {
-        misses_maps_ = true;
-      }
-    }
-    views.srcs.push_back(std::move(view));
-    src_images_.push_back(src);
-  }
+  if (spec.geometric) AddDepths(stage, images, &views);
   return views;
+}
+
+void StageRunner::AddDepths(int stage,
+                            const std::vector<ImageRequest>& images,
+                            ViewSet* views) {
+  std::vector<DepthRequest> requests;
+  std::vector<View*> views_with_maps;
+  for (size_t j = 0; j < views->srcs.size(); ++j) {
+    const auto [src, level] = images[j + 1];
+    if (!plan_.HasCurrentMaps(stage - 1, src)) continue;
+    requests.push_back(
+        {src, plan_.CameraOf(stage, src), plan_.Files(stage - 1, src), level});
+    views_with_maps.push_back(&views->srcs[j]);
+  }
+  const auto maps = inputs_->InverseDepths(requests);
+  for (size_t i = 0; i < maps.size(); ++i)
+    views_with_maps[i]->inverse_depth = maps[i];
+  for (size_t j = 0; j < views->srcs.size(); ++j) {
+    const bool has_maps = views->srcs[j].inverse_depth != nullptr;
+    if (!has_maps) ++num_without_maps_;
+    const int src = src_images_[j];
+    if (plan_.HasProblem(src) &&
+        (!has_maps || !plan_.HasCompleteMaps(stage - 1, src))) {
+      misses_maps_ = true;
+    }
+  }
 }
 
 HypothesisMap StageRunner::StartMap(int stage,
@@ -142,16 +158,16 @@ HypothesisMap StageRunner::StartMap(int stage,
   }
   const int image = problems_[problem].ref_image;
   const StageFiles files = plan_.Files(stage - 1, image);
-  HypothesisMap previous = ReadHypotheses(
+  std::vector<Plane> planes = ReadPlanes(
       files.depth, files.normal, plan_.CameraOf(stage - 1, image));
-  if (spec.geometric) return previous;
-  HypothesisMap map(camera.width, camera.height);
-  map.planes = UpsamplePrior(previous.planes,
-                             1,
-                             camera,
-                             *views.ref.image,
-                             {views.depth_min, views.depth_max});
-  return map;
+  if (!spec.geometric) {
+    planes = UpsamplePrior(planes,
+                           1,
+                           camera,
+                           *views.ref.image,
+                           {views.depth_min, views.depth_max});
+  }
+  return HypothesisMap(camera.width, camera.height, std::move(planes));
 }
 
 void StageRunner::Publish(int stage,

@@ -42,6 +42,10 @@ class StageRunner {
 
  private:
   ViewSet MakeViews(int stage, int problem);
+  // images: the reference, then the sources.
+  void AddDepths(int stage,
+                 const std::vector<ImageRequest>& images,
+                 ViewSet* views);
   // The hypotheses the stage starts from: none, those of the stage before, or
   // those of the coarser level upsampled.
   HypothesisMap StartMap(int stage, int problem, const ViewSet& views) const;

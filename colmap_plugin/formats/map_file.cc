@@ -2,7 +2,6 @@
 
 #include "colmap_plugin/formats/atomic_file.h"
 #include "colmap_plugin/formats/grid_header.h"
-#include "colmap_plugin/formats/input_file.h"
 #include "src/base/error.h"
 
 #include <algorithm>
@@ -14,8 +13,8 @@
 namespace hpm {
 namespace {
 
-// The number of values, checked by divisions so that no product can overflow.
-uint64_t CheckedNumValues(const InputFile& file, const GridHeader& header) {
+// By divisions, so that no product can overflow.
+void CheckNumValues(const InputFile& file, const GridHeader& header) {
   const uint64_t num_bytes = file.size() - header.num_bytes;
   uint64_t num_values = num_bytes / sizeof(float);
   bool fits = num_bytes % sizeof(float) == 0;
@@ -35,7 +34,6 @@ uint64_t CheckedNumValues(const InputFile& file, const GridHeader& header) {
             header.height,
             header.channels));
   }
-  return num_bytes / sizeof(float);
 }
 
 void CheckWritable(const std::filesystem::path& path, const Map& map) {
@@ -69,27 +67,39 @@ void CheckWritable(const std::filesystem::path& path, const Map& map) {
 
 }  // namespace
 
+MapReader::MapReader(const std::filesystem::path& path) : file_(path) {
+  const GridHeader header = ReadGridHeader(file_);
+  CheckNumValues(file_, header);
+  header_ = {header.width, header.height, header.channels};
+  header_bytes_ = header.num_bytes;
+}
+
+void MapReader::ReadRows(int channel,
+                         int row,
+                         int num_rows,
+                         float* values) const {
+  const uint64_t row_bytes = uint64_t{sizeof(float)} * header_.width;
+  const uint64_t first_row = uint64_t{1} * channel * header_.height + row;
+  const uint64_t num_bytes = num_rows * row_bytes;
+  if (file_.ReadAt(header_bytes_ + first_row * row_bytes, values, num_bytes) !=
+      num_bytes) {
+    throw Error(ErrorCode::kBadInput,
+                fmt::format("{} became shorter while it was read; run again",
+                            file_.path().string()));
+  }
+}
+
 MapHeader ReadMapHeader(const std::filesystem::path& path) {
-  const InputFile file(path);
-  const GridHeader header = ReadGridHeader(file);
-  CheckedNumValues(file, header);
-  return {header.width, header.height, header.channels};
+  return MapReader(path).header();
 }
 
 Map ReadMap(const std::filesystem::path& path) {
-  const InputFile file(path);
-  const GridHeader header = ReadGridHeader(file);
-  const uint64_t num_values = CheckedNumValues(file, header);
-  Map map{header.width,
-          header.height,
-          header.channels,
-          std::vector<float>(num_values)};
-  const size_t num_bytes = num_values * sizeof(float);
-  if (file.ReadAt(header.num_bytes, map.data.data(), num_bytes) != num_bytes) {
-    throw Error(ErrorCode::kBadInput,
-                fmt::format("{} became shorter while it was read; run again",
-                            path.string()));
-  }
+  const MapReader reader(path);
+  const auto [width, height, channels] = reader.header();
+  const size_t num_pixels = static_cast<size_t>(width) * height;
+  Map map{width, height, channels, std::vector<float>(num_pixels * channels)};
+  for (int channel = 0; channel < channels; ++channel)
+    reader.ReadRows(channel, 0, height, &map.data[channel * num_pixels]);
   return map;
 }
 

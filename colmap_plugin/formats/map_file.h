@@ -2,6 +2,8 @@
 // float32, channel by channel, row by row.
 #pragma once
 
+#include "colmap_plugin/formats/input_file.h"
+
 #include <filesystem>
 #include <vector>
 
@@ -26,6 +28,24 @@ struct MapHeader {
 // Reads and checks the header: positive sizes and a file length of exactly
 // header + 4*W*H*C bytes. Throws Error(kBadInput).
 MapHeader ReadMapHeader(const std::filesystem::path& path);
+
+// Reads a map in parts, which several threads may do at once.
+class MapReader {
+ public:
+  // As ReadMapHeader.
+  explicit MapReader(const std::filesystem::path& path);
+
+  const std::filesystem::path& path() const { return file_.path(); }
+  const MapHeader& header() const { return header_; }
+
+  // `values` has room for so many rows of one channel.
+  void ReadRows(int channel, int row, int num_rows, float* values) const;
+
+ private:
+  InputFile file_;
+  MapHeader header_;
+  uint64_t header_bytes_;
+};
 
 // As ReadMapHeader, then the values; allocates only after the length is
 // checked.

@@ -52,10 +52,11 @@ std::optional<std::string> ReadStampFingerprint(
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) return std::nullopt;
   std::ifstream file(path, std::ios::binary);
-  std::string text(kMaxStampBytes, '\0');
+  const auto num_bytes = std::filesystem::file_size(path, error);
+  if (error || num_bytes >= kMaxStampBytes) return std::nullopt;
+  std::string text(num_bytes, '\0');
   file.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<size_t>(file.gcount()));
-  if (text.size() == kMaxStampBytes) return std::nullopt;
 
   const nlohmann::json stamp =
       nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);

@@ -21,14 +21,21 @@ HPM_HD float UpsampleColorWeight(int d) {
               (2 * kUpsampleSigmaColor * kUpsampleSigmaColor));
 }
 
+// Weight of a tap that lies so many level pixels away.
+HPM_HD float UpsampleSpatialWeight(float dx, float dy) {
+  return expf(-(dx * dx + dy * dy) /
+              (2 * kUpsampleSigmaSpatial * kUpsampleSigmaSpatial));
+}
+
 // planes: one per pixel of LevelCamera(camera, level), distance 0 = none.
-// guide(col, row): 0..255; color_weight(d): UpsampleColorWeight(). Distance 0
-// if there is no tap or the depth leaves [depth_min, depth_max].
-template <class Guide, class ColorWeight>
+// guide(col, row): 0..255; spatial_weight(dx, dy), color_weight(d): as above.
+// Distance 0 if there is no tap or the depth leaves [depth_min, depth_max].
+template <class Guide, class SpatialWeight, class ColorWeight>
 HPM_HD Plane UpsamplePlaneAt(const Plane* planes,
                              int level,
                              const Camera& camera,
                              const Guide& guide,
+                             const SpatialWeight& spatial_weight,
                              const ColorWeight& color_weight,
                              float depth_min,
                              float depth_max,
@@ -65,8 +72,7 @@ HPM_HD Plane UpsamplePlaneAt(const Plane* planes,
                 tap_row < camera.height ? tap_row : camera.height - 1);
       const float dx = x - static_cast<float>(c);
       const float dy = y - static_cast<float>(r);
-      const float w = expf(-(dx * dx + dy * dy) / (2 * kUpsampleSigmaSpatial *
-                                                   kUpsampleSigmaSpatial)) *
+      const float w = spatial_weight(dx, dy) *
                       color_weight(grey > tap ? grey - tap : tap - grey);
       weights += w;
       inverse_depth += w * inv_z;

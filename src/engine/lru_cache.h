@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <iterator>
 #include <list>
 #include <memory>
 #include <unordered_map>
@@ -10,6 +11,7 @@
 namespace hpm {
 
 // Not thread-safe. A value larger than the bound is handed out but not kept.
+// Spare values fill what room is left, and go first.
 template <class Key, class Value>
 class LruCache {
  public:
@@ -21,6 +23,12 @@ class LruCache {
     if (it == index_.end()) return nullptr;
     entries_.splice(entries_.begin(), entries_, it->second);
     return it->second->value;
+  }
+
+  // Does not count as a use.
+  std::shared_ptr<const Value> Peek(const Key& key) const {
+    const auto it = index_.find(key);
+    return it == index_.end() ? nullptr : it->second->value;
   }
 
   void Insert(const Key& key,
@@ -37,10 +45,28 @@ class LruCache {
     }
   }
 
-  void Clear() {
-    entries_.clear();
-    index_.clear();
-    num_bytes_ = 0;
+  // Kept if that takes no room from others; spare until Find() uses it.
+  void InsertSpare(const Key& key,
+                   std::shared_ptr<const Value> value,
+                   uint64_t num_bytes) {
+    if (num_bytes > max_bytes_ - num_bytes_ || index_.count(key) > 0) return;
+    entries_.push_back({key, std::move(value), num_bytes});
+    index_[key] = std::prev(entries_.end());
+    num_bytes_ += num_bytes;
+  }
+
+  // is_unwanted(key)
+  template <class IsUnwanted>
+  void EraseIf(const IsUnwanted& is_unwanted) {
+    for (auto it = entries_.begin(); it != entries_.end();) {
+      if (!is_unwanted(it->key)) {
+        ++it;
+        continue;
+      }
+      num_bytes_ -= it->num_bytes;
+      index_.erase(it->key);
+      it = entries_.erase(it);
+    }
   }
 
   uint64_t num_bytes() const { return num_bytes_; }

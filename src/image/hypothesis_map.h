@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace hpm {
@@ -30,11 +31,16 @@ struct HypothesisMap {
 
   HypothesisMap() = default;
   HypothesisMap(int w, int h)
+      : HypothesisMap(w,
+                      h,
+                      std::vector<Plane>(static_cast<size_t>(w) * h,
+                                         Plane{{0, 0, 0}, 0})) {}
+  HypothesisMap(int w, int h, std::vector<Plane> start)
       : width(w),
         height(h),
-        planes(static_cast<size_t>(w) * h, Plane{{0, 0, 0}, 0}),
-        costs(static_cast<size_t>(w) * h, kMaxCost),
-        masks(static_cast<size_t>(w) * h, 0) {}
+        planes(std::move(start)),
+        costs(planes.size(), kMaxCost),
+        masks(planes.size(), 0) {}
 
   PixelState View() {
     return {width,

@@ -3,6 +3,7 @@
 
 #include "src/core/geometric_term.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -16,7 +17,10 @@ struct InverseDepthMap {
   std::vector<uint8_t> steps;  // see InverseDepths
 
   // values: 1/z, 0 = none.
-  static InverseDepthMap Of(const std::vector<float>& values);
+  static InverseDepthMap Of(const float* values, size_t count);
+  static InverseDepthMap Of(const std::vector<float>& values) {
+    return Of(values.data(), values.size());
+  }
 
   InverseDepths View() const { return {steps.data(), step}; }
 };

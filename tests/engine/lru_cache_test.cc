@@ -77,14 +77,41 @@ TEST(LruCache, ADroppedValueLivesOnWithItsUsers) {
   EXPECT_EQ(*held, "one");
 }
 
-TEST(LruCache, ClearForgetsEverything) {
+TEST(LruCache, ErasesWhatIsUnwanted) {
   Cache cache(30);
-  cache.Insert(1, Text("one"), 10);
-  cache.Clear();
+  for (const int key : {1, 2, 3}) cache.Insert(key, Text("text"), 10);
+  cache.EraseIf([](int key) { return key != 2; });
   EXPECT_EQ(cache.Find(1), nullptr);
-  EXPECT_EQ(cache.num_bytes(), 0u);
-  cache.Insert(1, Text("one"), 30);
+  EXPECT_NE(cache.Find(2), nullptr);
+  EXPECT_EQ(cache.Find(3), nullptr);
+  EXPECT_EQ(cache.num_bytes(), 10u);
+  cache.Insert(1, Text("one"), 20);
   EXPECT_NE(cache.Find(1), nullptr);
+  EXPECT_NE(cache.Find(2), nullptr);
+}
+
+TEST(LruCache, ASpareValueTakesNoRoomFromOthers) {
+  Cache cache(30);
+  cache.Insert(1, Text("one"), 20);
+  cache.InsertSpare(2, Text("two"), 20);
+  EXPECT_EQ(cache.Peek(2), nullptr);
+  cache.InsertSpare(3, Text("three"), 10);
+  EXPECT_NE(cache.Peek(3), nullptr);
+  cache.Insert(4, Text("four"), 10);
+  EXPECT_EQ(cache.Peek(3), nullptr);
+  EXPECT_NE(cache.Find(1), nullptr);
+  EXPECT_NE(cache.Find(4), nullptr);
+}
+
+TEST(LruCache, ASpareValueThatIsUsedIsSpareNoMore) {
+  Cache cache(30);
+  cache.InsertSpare(1, Text("one"), 10);
+  cache.Insert(2, Text("two"), 10);
+  cache.Insert(3, Text("three"), 10);
+  cache.Find(1);
+  cache.Insert(4, Text("four"), 10);
+  EXPECT_NE(cache.Find(1), nullptr);
+  EXPECT_EQ(cache.Find(2), nullptr);
 }
 
 }  // namespace

@@ -3,8 +3,13 @@
 #include "colmap_plugin/controller/ray_convention.h"
 #include "tests/colmap_plugin/controller/scene_workspace.h"
 
+#include <thread>
+#include <vector>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
 
 namespace hpm {
 namespace {
@@ -17,7 +22,25 @@ constexpr uint64_t kPlenty = 100 * kImageBytes;
 class InputCacheTest : public testing::Test {
  protected:
   InputCache MakeCache(uint64_t max_bytes) {
-    return InputCache(workspace_, max_bytes);
+    return InputCache(workspace_, max_bytes, /*max_decodes=*/4);
+  }
+
+  static std::shared_ptr<const GrayImage> Image(InputCache* cache,
+                                                int image,
+                                                int more_levels = 0) {
+    return cache->Images({{image, more_levels}}).front();
+  }
+
+  // Of image 0.
+  std::shared_ptr<const InverseDepthMap> Depth(InputCache* cache,
+                                               const StageFiles& files,
+                                               int more_levels = 0) {
+    return cache->InverseDepths({{0, workspace_.camera(0), files, more_levels}})
+        .front();
+  }
+  std::shared_ptr<const InverseDepthMap> Depth(const StageFiles& files) {
+    InputCache cache = MakeCache(kPlenty);
+    return Depth(&cache, files);
   }
 
   StageFiles WriteTruth(int image) {
@@ -47,32 +70,32 @@ class InputCacheTest : public testing::Test {
 
 TEST_F(InputCacheTest, ReadsAnImageOnce) {
   InputCache cache = MakeCache(kPlenty);
-  const auto first = cache.Image(1);
+  const auto first = Image(&cache, 1);
   ASSERT_NE(first, nullptr);
   EXPECT_EQ(first->width, kWidth);
   EXPECT_EQ(first->height, kHeight);
   std::filesystem::remove(workspace_.ImagePath(1));
-  EXPECT_EQ(cache.Image(1), first);
+  EXPECT_EQ(Image(&cache, 1), first);
 }
 
 TEST_F(InputCacheTest, ReadsAgainWhatDidNotFit) {
   InputCache cache = MakeCache(kImageBytes - 1);
-  ASSERT_NE(cache.Image(1), nullptr);
+  ASSERT_NE(Image(&cache, 1), nullptr);
   std::filesystem::remove(workspace_.ImagePath(1));
-  EXPECT_THROW(cache.Image(1), UnreadableImage);
+  EXPECT_THROW(Image(&cache, 1), UnreadableImage);
 }
 
 TEST_F(InputCacheTest, AStageGetsImagesOfItsLevel) {
   InputCache cache = MakeCache(kPlenty);
   cache.StartStage(1);
-  const auto half = cache.Image(1);
+  const auto half = Image(&cache, 1);
   ASSERT_NE(half, nullptr);
   const Camera camera = LevelCamera(workspace_.camera(1), 1);
   EXPECT_EQ(half->width, camera.width);
   EXPECT_EQ(half->height, camera.height);
-  EXPECT_EQ(cache.Image(1), half);
+  EXPECT_EQ(Image(&cache, 1), half);
   cache.StartStage(0);
-  const auto full = cache.Image(1);
+  const auto full = Image(&cache, 1);
   ASSERT_NE(full, nullptr);
   EXPECT_EQ(full->width, kWidth);
 }
@@ -80,34 +103,98 @@ TEST_F(InputCacheTest, AStageGetsImagesOfItsLevel) {
 TEST_F(InputCacheTest, ASourceMayBeHalvedMoreThanTheStage) {
   InputCache cache = MakeCache(kPlenty);
   cache.StartStage(1);
-  const auto of_stage = cache.Image(1);
-  const auto coarser = cache.Image(1, 1);
+  const auto of_stage = Image(&cache, 1);
+  const auto coarser = Image(&cache, 1, 1);
   ASSERT_NE(coarser, nullptr);
   const Camera camera = LevelCamera(workspace_.camera(1), 2);
   EXPECT_EQ(coarser->width, camera.width);
   EXPECT_EQ(coarser->height, camera.height);
-  EXPECT_EQ(cache.Image(1), of_stage);
-  EXPECT_EQ(cache.Image(1, 1), coarser);
+  EXPECT_EQ(Image(&cache, 1), of_stage);
+  EXPECT_EQ(Image(&cache, 1, 1), coarser);
+}
+
+TEST_F(InputCacheTest, AFileIsDecodedOnceForAllStages) {
+  InputCache cache = MakeCache(kPlenty);
+  cache.StartStage(2);
+  Image(&cache, 1);
+  std::filesystem::remove(workspace_.ImagePath(1));
+  for (const int level : {1, 0, 0}) {
+    cache.StartStage(level);
+    EXPECT_EQ(Image(&cache, 1)->width, kWidth >> level);
+  }
+}
+
+// The first to have no room is what only later stages need.
+TEST_F(InputCacheTest, ImagesOfLaterStagesTakeNoRoomFromThoseOfThis) {
+  constexpr uint64_t kHalfBytes = kImageBytes / 4;
+  InputCache cache = MakeCache(kImageBytes + kHalfBytes);
+  cache.StartStage(1);
+  const auto first = Image(&cache, 0);
+  for (const int image : {1, 2}) Image(&cache, image);
+  std::filesystem::remove(workspace_.ImagePath(0));
+  EXPECT_EQ(Image(&cache, 0), first);
+  cache.StartStage(0);
+  EXPECT_THROW(Image(&cache, 0), UnreadableImage);
+}
+
+TEST_F(InputCacheTest, ThreadsShareWhatOneOfThemReads) {
+  constexpr int kFactor = 60;  // so that decoding takes a while
+  constexpr int kNumThreads = 4;
+  for (int image = 0; image < 3; ++image) {
+    cv::imwrite(workspace_.ImagePath(image).string(),
+                cv::Mat(kFactor * kHeight,
+                        kFactor * kWidth,
+                        CV_8UC3,
+                        cv::Scalar::all(100 + image)));
+  }
+  InputCache cache = MakeCache(kPlenty);
+  cache.StartStage(1);
+  std::vector<std::vector<std::shared_ptr<const GrayImage>>> got(kNumThreads);
+  std::vector<std::thread> threads;
+  threads.reserve(kNumThreads);
+  for (auto& images : got) {
+    threads.emplace_back([&cache, &images] {
+      images = cache.Images({{0, 0}, {1, 0}, {1, 1}, {2, 0}});
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  for (const auto& images : got) EXPECT_EQ(images, got.front());
+  for (int i = 0; i < 4; ++i) {
+    const int image = std::vector<int>{0, 1, 1, 2}[i];
+    EXPECT_EQ(got[0][i]->at(0, 0), 100 + image);
+  }
+}
+
+TEST_F(InputCacheTest, TheFirstUnreadableImageIsNamed) {
+  for (const int image : {1, 2})
+    std::filesystem::resize_file(workspace_.ImagePath(image), 60);
+  InputCache cache = MakeCache(kPlenty);
+  try {
+    cache.Images({{0, 0}, {2, 0}, {1, 0}});
+    ADD_FAILURE();
+  } catch (const UnreadableImage& error) {
+    EXPECT_EQ(error.image(), 2);
+  }
 }
 
 TEST_F(InputCacheTest, AnUnreadableImageIsNamed) {
   std::filesystem::resize_file(workspace_.ImagePath(2), 60);
   InputCache cache = MakeCache(kPlenty);
   try {
-    cache.Image(2);
+    Image(&cache, 2);
     ADD_FAILURE();
   } catch (const UnreadableImage& error) {
     EXPECT_EQ(error.image(), 2);
     EXPECT_EQ(error.code(), ErrorCode::kBadInput);
     EXPECT_THAT(error.what(), testing::HasSubstr(ViewName(2)));
   }
-  EXPECT_NE(cache.Image(1), nullptr);
+  EXPECT_NE(Image(&cache, 1), nullptr);
 }
 
 TEST_F(InputCacheTest, InverseDepthIsThatOfTheFilesAtPixelCentres) {
   const StageFiles files = WriteTruth(0);
   InputCache cache = MakeCache(kPlenty);
-  const auto inverse = cache.InverseDepth(0, workspace_.camera(0), files);
+  const auto inverse = Depth(&cache, files);
   ASSERT_NE(inverse, nullptr);
   for (int i = 0; i < kWidth * kHeight; ++i) {
     EXPECT_NEAR(inverse->step * InverseDepthSteps(inverse->steps.data(), i) *
@@ -122,37 +209,35 @@ TEST_F(InputCacheTest, InverseDepthOfAHalvedSourceHasTheSizeOfItsCamera) {
   const Camera& camera = workspace_.camera(0);
   const Camera half = LevelCamera(camera, 1);
   InputCache cache = MakeCache(kPlenty);
-  const auto full = cache.InverseDepth(0, camera, files);
-  const auto halved = cache.InverseDepth(0, camera, files, 1);
+  const auto full = Depth(&cache, files);
+  const auto halved = Depth(&cache, files, 1);
   ASSERT_NE(halved, nullptr);
   EXPECT_EQ(
       halved->steps.size(),
       static_cast<size_t>(kInverseDepthBytes) * half.width * half.height + 1);
-  EXPECT_EQ(cache.InverseDepth(0, camera, files), full);
+  EXPECT_EQ(Depth(&cache, files), full);
 }
 
 TEST_F(InputCacheTest, DepthIsReadOnceUntilForgotten) {
   const StageFiles files = WriteTruth(0);
-  const Camera& camera = workspace_.camera(0);
   InputCache cache = MakeCache(kPlenty);
-  const auto first = cache.InverseDepth(0, camera, files);
+  const auto first = Depth(&cache, files);
   std::filesystem::remove(files.depth);
-  EXPECT_EQ(cache.InverseDepth(0, camera, files), first);
+  EXPECT_EQ(Depth(&cache, files), first);
   cache.StartStage(0);
-  EXPECT_EQ(cache.InverseDepth(0, camera, files), nullptr);
+  EXPECT_EQ(Depth(&cache, files), nullptr);
 }
 
 TEST_F(InputCacheTest, DamagedMapsGiveNoDepth) {
-  const Camera& camera = workspace_.camera(0);
   StageFiles files = WriteTruth(0);
   std::filesystem::resize_file(files.depth, 100);
-  EXPECT_EQ(MakeCache(kPlenty).InverseDepth(0, camera, files), nullptr);
+  EXPECT_EQ(Depth(files), nullptr);
   files = WriteTruth(0);
   std::filesystem::remove(files.normal);
-  EXPECT_EQ(MakeCache(kPlenty).InverseDepth(0, camera, files), nullptr);
+  EXPECT_EQ(Depth(files), nullptr);
   files = WriteTruth(0);
   WriteMap(files.depth, {2, 2, 1, {1, 1, 1, 1}});  // another size
-  EXPECT_EQ(MakeCache(kPlenty).InverseDepth(0, camera, files), nullptr);
+  EXPECT_EQ(Depth(files), nullptr);
 }
 
 }  // namespace

@@ -49,17 +49,45 @@ HypothesisMap RandomPlanes() {
   return map;
 }
 
-TEST(RayConvention, RoundTripIsExactToRounding) {
+// What the files give back.
+class RayConvention : public testing::Test {
+ protected:
+  void Write(const DepthAndNormal& files) {
+    WriteMap(folder_.path() / "depth.bin", files.depth);
+    WriteMap(folder_.path() / "normal.bin", files.normal);
+  }
+  std::vector<Plane> Planes(const DepthAndNormal& files) {
+    Write(files);
+    return ReadPlanes(
+        folder_.path() / "depth.bin", folder_.path() / "normal.bin", kCamera);
+  }
+  std::vector<float> InverseDepths(const HypothesisMap& map, int more_levels) {
+    Write(ToColmapMaps(map, kCamera));
+    const InverseDepthMap inverse =
+        ReadInverseDepths(folder_.path() / "depth.bin",
+                          folder_.path() / "normal.bin",
+                          kCamera,
+                          more_levels);
+    std::vector<float> values(inverse.steps.size() / kInverseDepthBytes);
+    for (size_t i = 0; i < values.size(); ++i)
+      values[i] = inverse.step * InverseDepthSteps(inverse.steps.data(), i);
+    return values;
+  }
+
+  ScratchFolder folder_;
+};
+
+TEST_F(RayConvention, RoundTripIsExactToRounding) {
   const HypothesisMap map = RandomPlanes();
   const DepthAndNormal files = ToColmapMaps(map, kCamera);
-  const HypothesisMap back = FromColmapMaps(files.depth, files.normal, kCamera);
+  const std::vector<Plane> back = Planes(files);
   for (size_t i = 0; i < map.planes.size(); ++i) {
-    EXPECT_EQ(Norm(back.planes[i].normal - map.planes[i].normal), 0);
-    EXPECT_NEAR(back.planes[i].distance / map.planes[i].distance, 1, 1e-6);
+    EXPECT_EQ(Norm(back[i].normal - map.planes[i].normal), 0);
+    EXPECT_NEAR(back[i].distance / map.planes[i].distance, 1, 1e-6);
   }
 }
 
-TEST(RayConvention, DropsDepthsOutsideARangeWithTheirNormals) {
+TEST_F(RayConvention, DropsDepthsOutsideARangeWithTheirNormals) {
   DepthAndNormal maps = {{2, 2, 1, {1, 2, 3, 4}},
                          {2, 2, 3, std::vector<float>(12, 0.5f)}};
   EXPECT_EQ(DropOutside({2, 3}, &maps), 2u);
@@ -68,12 +96,12 @@ TEST(RayConvention, DropsDepthsOutsideARangeWithTheirNormals) {
     EXPECT_EQ(maps.normal.data[i], maps.depth.data[i % 4] > 0 ? 0.5f : 0);
 }
 
-TEST(RayConvention, RoundTripsDoNotDrift) {
+TEST_F(RayConvention, RoundTripsDoNotDrift) {
   HypothesisMap map = RandomPlanes();
   const HypothesisMap first = map;
   for (int i = 0; i < 20; ++i) {
     const DepthAndNormal files = ToColmapMaps(map, kCamera);
-    map = FromColmapMaps(files.depth, files.normal, kCamera);
+    map.planes = Planes(files);
   }
   for (size_t i = 0; i < map.planes.size(); ++i) {
     EXPECT_NEAR(map.planes[i].distance / first.planes[i].distance, 1, 5e-6);
@@ -82,7 +110,7 @@ TEST(RayConvention, RoundTripsDoNotDrift) {
 
 // Fusion puts the value of (col, row) on the ray K^-1 (col, row, 1) of the
 // sparse model's K: the point must lie on the plane that was estimated.
-TEST(RayConvention, FusionsPointsLieOnThePlane) {
+TEST_F(RayConvention, FusionsPointsLieOnThePlane) {
   const HypothesisMap map = RandomPlanes();
   const DepthAndNormal files = ToColmapMaps(map, kCamera);
   const Camera fusion = SparseModelCamera();
@@ -99,7 +127,7 @@ TEST(RayConvention, FusionsPointsLieOnThePlane) {
 }
 
 // One plane for the whole picture: in the world, all points lie on it.
-TEST(RayConvention, FusedWallIsTheTrueWall) {
+TEST_F(RayConvention, FusedWallIsTheTrueWall) {
   const Vec3f normal = Normalized({0.3f, -0.2f, -1});
   HypothesisMap map(kWidth, kHeight);
   const Plane wall = PlaneFromDepth(kCamera, 10, 10, 5, normal);
@@ -120,7 +148,7 @@ TEST(RayConvention, FusedWallIsTheTrueWall) {
   }
 }
 
-TEST(RayConvention, NormalsAreStoredPlaneByPlane) {
+TEST_F(RayConvention, NormalsAreStoredPlaneByPlane) {
   const HypothesisMap map = RandomPlanes();
   const DepthAndNormal files = ToColmapMaps(map, kCamera);
   ASSERT_EQ(files.depth.channels, 1);
@@ -132,30 +160,15 @@ TEST(RayConvention, NormalsAreStoredPlaneByPlane) {
   EXPECT_EQ(files.normal.data[2 * size + 77], map.planes[77].normal.z);
 }
 
-class HalvedInverseDepths : public testing::Test {
- protected:
-  std::vector<float> Read(const HypothesisMap& map, int more_levels) {
-    const DepthAndNormal files = ToColmapMaps(map, kCamera);
-    WriteMap(folder_.path() / "depth.bin", files.depth);
-    WriteMap(folder_.path() / "normal.bin", files.normal);
-    return ReadInverseDepths(folder_.path() / "depth.bin",
-                             folder_.path() / "normal.bin",
-                             kCamera,
-                             more_levels);
-  }
-
-  ScratchFolder folder_;
-};
-
 // Also in the partial blocks at the right and lower border.
-TEST_F(HalvedInverseDepths, ArePlanesAtTheCentresOfTheCoarsePixels) {
+TEST_F(RayConvention, HalvedInverseDepthsArePlanesAtTheCentresOfTheCoarsePixels) {
   HypothesisMap map(kWidth, kHeight);
   const Plane wall =
       PlaneFromDepth(kCamera, 10, 10, 5, Normalized({0.3f, -0.2f, -1}));
   for (Plane& plane : map.planes) plane = wall;
   for (int level = 0; level < 4; ++level) {
     const Camera coarse = LevelCamera(kCamera, level);
-    const std::vector<float> inverse = Read(map, level);
+    const std::vector<float> inverse = InverseDepths(map, level);
     ASSERT_EQ(inverse.size(),
               static_cast<size_t>(coarse.width) * coarse.height);
     for (int row = 0; row < coarse.height; ++row) {
@@ -170,41 +183,41 @@ TEST_F(HalvedInverseDepths, ArePlanesAtTheCentresOfTheCoarsePixels) {
   }
 }
 
-TEST_F(HalvedInverseDepths, HolesStayHoles) {
+TEST_F(RayConvention, HolesOfInverseDepthsStayHoles) {
   HypothesisMap map = RandomPlanes();
   const Camera coarse = LevelCamera(kCamera, 1);
   for (int row = 4; row < 6; ++row) {
     for (int col = 6; col < 8; ++col)
       map.planes[row * kWidth + col] = {{0, 0, 0}, 0};
   }
-  const std::vector<float> inverse = Read(map, 1);
+  const std::vector<float> inverse = InverseDepths(map, 1);
   for (size_t i = 0; i < inverse.size(); ++i) {
     EXPECT_EQ(inverse[i] > 0, i != static_cast<size_t>(2 * coarse.width + 3))
         << i;
   }
 }
 
-TEST(RayConvention, PixelsNotKeptOrWithoutAPlaneAreZero) {
+TEST_F(RayConvention, PixelsNotKeptOrWithoutAPlaneAreZero) {
   HypothesisMap map = RandomPlanes();
   map.planes[5] = {{0, 0, 0}, 0};
   std::vector<bool> keep(map.planes.size(), true);
   keep[7] = false;
   const DepthAndNormal files = ToColmapMaps(map, kCamera, &keep);
-  const HypothesisMap back = FromColmapMaps(files.depth, files.normal, kCamera);
+  const std::vector<Plane> back = Planes(files);
   const size_t size = map.planes.size();
   for (const size_t i : {size_t{5}, size_t{7}}) {
     EXPECT_EQ(files.depth.data[i], 0);
     for (int channel = 0; channel < 3; ++channel) {
       EXPECT_EQ(files.normal.data[channel * size + i], 0);
     }
-    EXPECT_EQ(back.planes[i].distance, 0);
+    EXPECT_EQ(back[i].distance, 0);
   }
   EXPECT_GT(files.depth.data[6], 0);
 }
 
 // Seen nearly edge-on a plane may meet the ray of the pixel's centre but not
 // the one half a pixel beside it.
-TEST(RayConvention, PlaneThatMissesColmapsRayBecomesZero) {
+TEST_F(RayConvention, PlaneThatMissesColmapsRayBecomesZero) {
   HypothesisMap map = RandomPlanes();
   const Vec3f ray = RayAt(kCamera, 20, 10);
   const Vec3f other = RayAt(kCamera, 19.75f, 10);
@@ -216,7 +229,7 @@ TEST(RayConvention, PlaneThatMissesColmapsRayBecomesZero) {
   EXPECT_EQ(files.normal.data[10 * kWidth + 20], 0);
 }
 
-TEST(RayConvention, NonFinitePlanesBecomeZero) {
+TEST_F(RayConvention, NonFinitePlanesBecomeZero) {
   HypothesisMap map = RandomPlanes();
   map.planes[3] = {{NAN, 0, -1}, 1};
   map.planes[4] = {{0, 0, -1}, INFINITY};

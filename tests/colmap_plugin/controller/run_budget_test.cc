@@ -60,5 +60,18 @@ TEST_F(RunBudgetTest, OneLargeSourceCounts) {
   EXPECT_EQ(Working(), before + 224u * 40u * 30u * 4u);
 }
 
+TEST(DecodesAtOnceTest, FitIntoWhatMatchingTakes) {
+  MemoryNeeds needs;
+  needs.working = 900;
+  needs.decoding = 100;
+  EXPECT_EQ(DecodesAtOnce(needs), 3);
+  needs.decoding = 800;
+  EXPECT_EQ(DecodesAtOnce(needs), 1);
+  needs.decoding = 1;
+  EXPECT_EQ(DecodesAtOnce(needs), 8);
+  needs.decoding = 0;
+  EXPECT_EQ(DecodesAtOnce(needs), 8);
+}
+
 }  // namespace
 }  // namespace hpm

@@ -78,7 +78,7 @@ class StageRunnerTest : public testing::Test {
     const Schedule schedule = MakeSchedule(MakeScheduleOptions(options));
     const StagePlan plan(workspace, problems, schedule, options);
     const LogSink log = [](LogLevel, const std::string&) {};
-    InputCache inputs(workspace, 1 << 20);
+    InputCache inputs(workspace, 1 << 20, /*max_decodes=*/2);
     CancelToken cancel;
     const RunLock lock(workspace.StatePath(), log, &cancel);
     StageRunner runner(workspace,
