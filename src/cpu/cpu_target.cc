@@ -5,7 +5,7 @@
 #include "src/cpu/geometric_error_simd.h"
 #include "src/cpu/match_cost_scalar.h"
 #include "src/cpu/match_cost_simd.h"
-#include "src/cpu/simd_targets.h"
+#include "src/base/simd_targets.h"
 
 #include <algorithm>
 #include <cctype>

@@ -3,7 +3,7 @@
 #define HWY_TARGET_INCLUDE "src/cpu/geometric_error_simd.cc"
 #include "src/cpu/geometric_error_simd.h"
 
-#include "src/cpu/simd_targets.h"
+#include "src/base/simd_targets.h"
 
 #include <iterator>
 

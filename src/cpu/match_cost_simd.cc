@@ -3,7 +3,7 @@
 #define HWY_TARGET_INCLUDE "src/cpu/match_cost_simd.cc"
 #include "src/cpu/match_cost_simd.h"
 
-#include "src/cpu/simd_targets.h"
+#include "src/base/simd_targets.h"
 
 #include <iterator>
 

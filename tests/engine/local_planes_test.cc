@@ -1,11 +1,15 @@
 #include "src/engine/local_planes.h"
 
 #include "src/core/rng.h"
+#include "tests/engine/readable_local_planes.h"
 #include "tests/prior/prior_scene.h"
 
 #include <cmath>
+#include <cstring>
+#include <utility>
 
 #include <gtest/gtest.h>
+#include <hwy/targets.h>
 
 namespace hpm {
 namespace {
@@ -132,6 +136,64 @@ TEST_F(LocalPlanesTest, ALonelyPixelKeepsItsPlane) {
   const Plane& plane = map_.planes[20 * kWidth + 20];
   EXPECT_NEAR(DepthAt(camera_, plane, 20, 20), 3, 1e-4);
   EXPECT_GT(Dot(plane.normal, own.normal), 0.999);
+}
+
+// Surfaces with steps, gaps and edges; some planes point anywhere.
+HypothesisMap RoughMap(const Camera& camera, int width, int height) {
+  HypothesisMap map(width, height);
+  for (int row = 0; row < height; ++row) {
+    for (int col = 0; col < width; ++col) {
+      Rng rng(2, col, row);
+      if (rng.Uniform() < 0.1f) continue;
+      const float z = (col / 11 + row / 7) % 2 == 0 ? 3 : 3.05f;
+      const float tilt = rng.Uniform() < 0.05f ? 3 : 0.3f;
+      map.planes[row * width + col] = PlaneFromDepth(
+          camera,
+          static_cast<float>(col),
+          static_cast<float>(row),
+          z + 0.01f * rng.Uniform(-1, 1),
+          Normalized(
+              {tilt * rng.Uniform(-1, 1), tilt * rng.Uniform(-1, 1), -1}));
+    }
+  }
+  return map;
+}
+
+TEST(FitLocalPlanes, AllTargetsGiveTheBytesOfTheReadableForm) {
+  const std::vector<int64_t> targets = hwy::SupportedAndGeneratedTargets();
+  for (const auto& [width, height] :
+       {std::pair(1, 1), {2, 9}, {16, 5}, {61, 50}, {200, 40}}) {
+    const Camera camera = PriorCamera(width, height);
+    GrayImage image = {width, height, std::vector<uint8_t>(width * height)};
+    for (int i = 0; i < width * height; ++i) {
+      image.data[i] =
+          static_cast<uint8_t>(i / 5 % 2 * 180 + 40 * Rng(3, i, 0).Uniform());
+    }
+    const HypothesisMap start = RoughMap(camera, width, height);
+    const PriorRange range = {3, 3.06f};
+    HypothesisMap expected = start;
+    readable::FitLocalPlanes(camera, image, kTolerance, range, &expected);
+    for (const int64_t target : targets) {
+      HypothesisMap map = start;
+      hwy::SetSupportedTargetsForTest(target);
+      FitLocalPlanes(camera, image, kTolerance, range, &map);
+      hwy::SetSupportedTargetsForTest(0);
+      EXPECT_EQ(std::memcmp(map.planes.data(),
+                            expected.planes.data(),
+                            map.planes.size() * sizeof(Plane)),
+                0)
+          << hwy::TargetName(target) << " " << width << "x" << height;
+    }
+    if (width < 61) continue;
+    int num_fitted = 0;
+    for (size_t i = 0; i < start.planes.size(); ++i) {
+      num_fitted +=
+          std::memcmp(&start.planes[i], &expected.planes[i], sizeof(Plane)) !=
+          0;
+    }
+    EXPECT_GT(num_fitted, width * height / 2);
+    EXPECT_LT(num_fitted, width * height * 0.89);  // gaps and the range
+  }
 }
 
 }  // namespace

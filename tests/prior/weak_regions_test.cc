@@ -129,17 +129,18 @@ std::vector<uint16_t> FloodedRegions(const GrayImage& image,
   return labels;
 }
 
-// Plain and textured blotches, so that regions of all shapes meet in several
-// bands of rows.
+// Shadings that are just weak and just not, with specks: regions of all shapes
+// meet in several bands of rows.
 GrayImage Blotches(int width, int height, uint64_t key) {
   GrayImage image = {width, height, std::vector<uint8_t>(width * height)};
   for (int row = 0; row < height; ++row) {
     for (int col = 0; col < width; ++col) {
-      Rng blotch(key, col / 9, row / 7);
-      Rng pixel(key + 1, col, row);
-      const float noise = blotch.Uniform() < 0.35f ? 40 : 2;
+      Rng rng(key, col, row);
+      const float shade = 60 + 25 * std::sin(0.062f * static_cast<float>(col)) +
+                          25 * std::cos(0.05f * static_cast<float>(row));
+      const bool speck = rng.Uniform() < 0.004f;
       image.data[row * width + col] =
-          static_cast<uint8_t>(100 + noise * pixel.Uniform());
+          static_cast<uint8_t>(speck ? 250 : shade + rng.Uniform());
     }
   }
   return image;
@@ -158,6 +159,17 @@ TEST(FindWeakRegions, ManyBandsOfRowsAreOneImage) {
     if (height == 300) {
       EXPECT_GT(regions.num_regions, 5);
     }
+  }
+}
+
+// The farthest tap of the blur decides.
+TEST(FindWeakRegions, ABrightLineReachesAsFarIntoTheNextBand) {
+  for (int line = 50; line < 80; ++line) {
+    GrayImage image = {20, 130, std::vector<uint8_t>(20 * 130, 0)};
+    std::fill_n(image.data.begin() + 20 * line, 20, uint8_t{255});
+    EXPECT_EQ(FindWeakRegions(image, 0.001f, 0.01f).label,
+              FloodedRegions(image, 0.001f, 26))
+        << line;
   }
 }
 
