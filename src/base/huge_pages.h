@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 #include <new>
 
@@ -10,10 +11,25 @@
 
 namespace hpm {
 
+constexpr size_t kHugePage = size_t{2} << 20;  // bytes
+
+// For the whole huge pages within this memory; refusal does no harm.
+inline void WishHugePages(void* memory, size_t num_bytes) {
+#ifdef MADV_HUGEPAGE
+  const auto address = reinterpret_cast<uintptr_t>(memory);
+  const uintptr_t begin = (address + kHugePage - 1) / kHugePage * kHugePage;
+  const uintptr_t end = (address + num_bytes) / kHugePage * kHugePage;
+  if (begin < end)
+    madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);
+#else
+  static_cast<void>(memory);
+  static_cast<void>(num_bytes);
+#endif
+}
+
 template <class T>
 struct HugePageAllocator {
   using value_type = T;
-  static constexpr size_t kHugePage = size_t{2} << 20;  // bytes
 
   HugePageAllocator() = default;
   template <class U>
@@ -25,9 +41,7 @@ struct HugePageAllocator {
     bytes = (bytes + kHugePage - 1) / kHugePage * kHugePage;
     void* memory = std::aligned_alloc(kHugePage, bytes);
     if (memory == nullptr) throw std::bad_alloc();
-#ifdef MADV_HUGEPAGE
-    madvise(memory, bytes, MADV_HUGEPAGE);  // a wish; refusal does no harm
-#endif
+    WishHugePages(memory, bytes);
     return static_cast<T*>(memory);
   }
 

@@ -1,5 +1,6 @@
 #include "src/engine/estimator.h"
 
+#include "src/base/large_vectors.h"
 #include "src/engine/local_planes.h"
 #include "src/engine/mine_regions.h"
 #include "src/engine/phase_timer.h"
@@ -10,9 +11,13 @@
 #include <utility>
 #include <vector>
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 namespace hpm {
 namespace {
 
+constexpr size_t kPixelsPerTask = 1 << 14;
 constexpr float kFitTolerance = 0.5f;  // pixels, see FitLocalPlanes()
 
 const char* PhaseName(PassKind kind) {
@@ -35,13 +40,17 @@ void MergeLevels(const HypothesisMap& carried,
                  const std::vector<bool>& searched,
                  HypothesisMap* map) {
   constexpr float kClearly = 0.1f;
-  for (size_t i = 0; i < map->planes.size(); ++i) {
-    const float margin = searched[i] ? kClearly : -kClearly;
-    if (map->costs[i] < carried.costs[i] + margin) continue;
-    map->planes[i] = carried.planes[i];
-    map->costs[i] = carried.costs[i];
-    map->masks[i] = carried.masks[i];
-  }
+  tbb::parallel_for(
+      tbb::blocked_range<size_t>(0, map->planes.size(), kPixelsPerTask),
+      [&](const auto& pixels) {
+        for (size_t i = pixels.begin(); i < pixels.end(); ++i) {
+          const float margin = searched[i] ? kClearly : -kClearly;
+          if (map->costs[i] < carried.costs[i] + margin) continue;
+          map->planes[i] = carried.planes[i];
+          map->costs[i] = carried.costs[i];
+          map->masks[i] = carried.masks[i];
+        }
+      });
 }
 
 // Forgets the hypotheses of textured pixels; returns which.
@@ -50,11 +59,16 @@ std::vector<bool> ForgetTextured(const GrayImage& image,
                                  HypothesisMap* map) {
   const WeakRegions regions = FindWeakRegions(
       image, params.region_max_gradient, params.region_min_share);
-  std::vector<bool> textured(map->planes.size());
-  for (size_t i = 0; i < textured.size(); ++i) {
-    textured[i] = regions.label[i] == 0;
-    if (textured[i]) map->planes[i].distance = 0;
-  }
+  std::vector<bool> textured(map->planes.size(), false);
+  regions.ForEachBand([&](const Rows& rows) {
+    const size_t end = static_cast<size_t>(rows.end) * regions.width;
+    for (size_t i = static_cast<size_t>(rows.begin) * regions.width; i < end;
+         ++i) {
+      if (regions.label[i] > 0) continue;
+      textured[i] = true;
+      map->planes[i].distance = 0;
+    }
+  });
   return textured;
 }
 
@@ -85,7 +99,9 @@ void RunStage(Backend* backend,
                   false};
     judge.ask_all_views = stage.passes.front().ask_all_views;
     backend->Run(judge, schedule.pattern, map, {control.cancel, nullptr});
-    carried = *map;
+    carried.planes = Copied(map->planes);
+    carried.costs = Copied(map->costs);
+    carried.masks = Copied(map->masks);
     searched.assign(map->planes.size(), false);
     if (stage.passes.front().start == StartFrom::kMissing)
       searched = ForgetTextured(*views.ref.image, params, map);

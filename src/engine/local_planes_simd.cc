@@ -134,7 +134,7 @@ HWY_INLINE MF FitOnce(DF df,
   s.yy = hn::Add(s.yy, trust);
   s.bx = hn::Add(s.bx, trusted(plane->col_slope));
   s.by = hn::Add(s.by, trusted(plane->row_slope));
-  LocalPlane fitted;
+  LocalPlane fitted = {zero, zero, zero};
   const MF solved = Solve(df, s, &fitted);
   plane->constant =
       hn::Add(plane->constant, hn::Mul(fitted.constant, tolerance));

@@ -1,5 +1,6 @@
 #include "src/engine/mine_regions.h"
 
+#include "src/base/large_vectors.h"
 #include "src/engine/visit_params.h"
 #include "src/prior/region_planes.h"
 
@@ -231,9 +232,8 @@ MinedRegions MineRegions(const ViewSet& views,
     }
     planes.of_region[label] = std::move(believed);
   }
-  MinedRegions result = {
-      std::vector<Plane>(map.planes.size(), Plane{{0, 0, 0}, 0}),
-      std::move(outlines.inner)};
+  MinedRegions result = {Filled(map.planes.size(), Plane{{0, 0, 0}, 0}),
+                         std::move(outlines.inner)};
   regions.ForEachBand([&](const Rows& rows) {
     for (int row = rows.begin; row < rows.end; ++row) {
       for (int col = 0; col < regions.width; ++col) {

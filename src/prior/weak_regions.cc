@@ -1,5 +1,7 @@
 #include "src/prior/weak_regions.h"
 
+#include "src/base/large_vectors.h"
+
 #include <algorithm>
 #include <numeric>
 #include <utility>
@@ -225,7 +227,7 @@ WeakRegions FindWeakRegions(const GrayImage& image,
   const double min_area = min_share * image.width * image.height;
   const std::vector<uint16_t> names =
       NameRuns(runs, min_area, &regions.num_regions);
-  regions.label.resize(image.data.size());
+  regions.label = Filled(image.data.size(), uint16_t{0});
   tbb::parallel_for(0, num_bands, [&](int i) {
     Draw(runs, names, BandAt(i, image.height), &regions);
   });

@@ -10,7 +10,6 @@ namespace hpm {
 namespace {
 
 using Vector = std::vector<uint16_t, HugePageAllocator<uint16_t>>;
-constexpr size_t kHugePage = HugePageAllocator<uint16_t>::kHugePage;
 
 // Below, at and above the size from which pages are huge, and not a whole
 // number of them.
