@@ -34,6 +34,14 @@ const char* PhaseOf(SweepKind kind) {
   return "filter";
 }
 
+// What of a map is read before it is written.
+enum class Read { kNothing, kPlanes, kAll };
+
+Read ReadBy(StartFrom start) {
+  if (start == StartFrom::kRandom) return Read::kNothing;
+  return start == StartFrom::kCurrent ? Read::kPlanes : Read::kAll;
+}
+
 // Stream, events and the launches that are on their way.
 class LaunchQueue {
  public:
@@ -173,7 +181,8 @@ class CudaBackendImpl : public CudaBackend {
            const RunControl& control) override {
     UseDevice();
     SetPass(pass, pattern, &tables_);
-    const PixelState state = Upload(*map, control.continues);
+    const PixelState state =
+        Upload(*map, control.continues, ReadBy(pass.start));
     const int num_steps = pass.NumSteps();
     int step = 0;
     for (const Sweep& sweep : SweepsOf(pass, random_key_)) {
@@ -197,7 +206,7 @@ class CudaBackendImpl : public CudaBackend {
                                         bool geometric,
                                         const RunControl& control) override {
     UseDevice();
-    const PixelState state = Upload(map, control.continues);
+    const PixelState state = Upload(map, control.continues, Read::kPlanes);
     std::vector<uint32_t> consistent(map.planes.size());
     consistent_.Reserve(consistent.size());
     for (const Sweep& sweep : ConsistencySweeps(filter, geometric)) {
@@ -249,21 +258,23 @@ class CudaBackendImpl : public CudaBackend {
     CheckCuda(cudaStreamSynchronize(stream()), doing);
   }
 
-  PixelState Upload(const HypothesisMap& map, bool continues) {
+  PixelState Upload(const HypothesisMap& map, bool continues, Read read) {
     PhaseTimer timer(&seconds_, "upload");
     const size_t size = map.planes.size();
-    if (!continues || resident_ != &map) {
-      planes_.Upload(map.planes, stream());
-      costs_.Upload(map.costs, stream());
-      masks_.Upload(map.masks, stream());
-    }
-    resident_ = nullptr;
     PixelState state = {map.width,
                         map.height,
-                        planes_.data(),
-                        costs_.data(),
-                        masks_.data(),
+                        planes_.Reserve(size),
+                        costs_.Reserve(size),
+                        masks_.Reserve(size),
                         nullptr};
+    if (!continues || resident_ != &map) {
+      if (read != Read::kNothing) planes_.Upload(map.planes, stream());
+      if (read == Read::kAll) {
+        costs_.Upload(map.costs, stream());
+        masks_.Upload(map.masks, stream());
+      }
+    }
+    resident_ = nullptr;
     if (!map.priors.empty() && map.prior_level == 0) {
       priors_.Upload(map.priors, stream());
       state.priors = priors_.data();

@@ -28,7 +28,7 @@ HPM_HD void StoreWindow(const RefPatch& patch,
 }
 
 #if !defined(HPM_ROWS)
-#define HPM_ROWS 6
+#define HPM_ROWS 3
 #endif
 constexpr int kRowsUnrolled = HPM_ROWS;
 

@@ -16,7 +16,7 @@ namespace hpm {
 constexpr int kWarpsPerBlock = HPM_WARPS_PER_BLOCK;
 // At most 128 registers per thread. The benchmark compares other numbers.
 #if !defined(HPM_BLOCKS_PER_PROCESSOR)
-#define HPM_BLOCKS_PER_PROCESSOR 6
+#define HPM_BLOCKS_PER_PROCESSOR 8
 #endif
 constexpr int kBlocksPerProcessor = HPM_BLOCKS_PER_PROCESSOR;
 

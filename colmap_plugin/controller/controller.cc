@@ -191,6 +191,7 @@ RunSummary PatchMatchController::Run() {
       OpenGpus(options_,
                LargestProblem(workspace, problems, geometric),
                static_cast<int>(problems.size()),
+               num_threads,
                RealGpus(),
                log_);
   const Backend& first = gpus.empty() ? *cpus.front() : *gpus.front();

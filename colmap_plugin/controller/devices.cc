@@ -15,9 +15,13 @@
 namespace hpm {
 namespace {
 
-// Enough that while one image computes, another is read or has its prior built
-// and a third is written.
-constexpr int kMostImagesPerEntry = 3;
+// While one image computes, others are read, have their priors built and are
+// written; a fast card waits for the host, so as many as the host has cores
+// for (docs/gpu.md).
+int MostImagesPerEntry(int num_threads) {
+  constexpr int kLeast = 3, kMost = 8, kThreadsPerImage = 2;
+  return std::clamp(num_threads / kThreadsPerImage, kLeast, kMost);
+}
 
 const CudaDevice* FindDevice(const std::vector<CudaDevice>& devices,
                              int index) {
@@ -81,6 +85,7 @@ GpuAccess RealGpus() {
 std::vector<std::unique_ptr<Backend>> OpenGpus(const ControllerOptions& options,
                                                const ProblemSize& largest,
                                                int num_images,
+                                               int num_threads,
                                                const GpuAccess& gpus,
                                                const LogSink& log) {
   std::vector<std::unique_ptr<Backend>> backends;
@@ -106,8 +111,8 @@ std::vector<std::unique_ptr<Backend>> OpenGpus(const ControllerOptions& options,
        ParseGpuIndex(options.patch_match.gpu_index, num_indices)) {
     ++num_entries[index];
   }
-  const int most =
-      options.hpm.gpu_images > 0 ? options.hpm.gpu_images : kMostImagesPerEntry;
+  const int most = options.hpm.gpu_images > 0 ? options.hpm.gpu_images
+                                              : MostImagesPerEntry(num_threads);
   for (const auto& [index, entries] : num_entries) {
     const CudaDevice* device = FindDevice(devices, index);
     try {

@@ -33,6 +33,7 @@ GpuAccess RealGpus();
 std::vector<std::unique_ptr<Backend>> OpenGpus(const ControllerOptions& options,
                                                const ProblemSize& largest,
                                                int num_images,
+                                               int num_threads,
                                                const GpuAccess& gpus,
                                                const LogSink& log);
 

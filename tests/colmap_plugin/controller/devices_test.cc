@@ -103,7 +103,8 @@ class DevicesTest : public testing::Test {
 
   std::vector<std::string> Open(const std::string& device,
                                 const std::string& gpu_index,
-                                int num_images = 100) {
+                                int num_images = 100,
+                                int num_threads = 2) {
     ControllerOptions options;
     options.hpm.device = device;
     options.patch_match.gpu_index = gpu_index;
@@ -112,6 +113,7 @@ class DevicesTest : public testing::Test {
          OpenGpus(options,
                   {1000, 1000, 1000, 1000, 10, true},
                   num_images,
+                  num_threads,
                   gpus_,
                   [this](LogLevel level, const std::string&line) {
                     lines_.push_back((level == LogLevel::kInfo ? "I " : "W ") +
@@ -161,6 +163,8 @@ TEST_F(DevicesTest, EveryEntryGetsItsImagesInFlight) {
   EXPECT_EQ(Open("auto", "1").size(), 3u);
   EXPECT_EQ(Open("auto", "1,1").size(), 6u);
   EXPECT_EQ(Open("auto", "-1", 1).size(), 1u);
+  EXPECT_EQ(Open("auto", "0", 100, 12).size(), 6u);
+  EXPECT_EQ(Open("auto", "0", 100, 96).size(), 8u);
   EXPECT_TRUE(lines_.empty());
 }
 
