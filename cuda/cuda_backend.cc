@@ -126,6 +126,7 @@ class CudaBackendImpl : public CudaBackend {
               "asking for the device");
     name_ = properties.name;
     queue_.emplace();
+    uploader_.emplace(queue_->stream());
     images_.emplace(options.format);
     counter_.Reserve(1);
   }
@@ -133,6 +134,7 @@ class CudaBackendImpl : public CudaBackend {
   ~CudaBackendImpl() override {
     cudaSetDevice(options_.device);
     queue_.reset();
+    uploader_.reset();
   }
 
   std::string Name() const override {
@@ -141,7 +143,8 @@ class CudaBackendImpl : public CudaBackend {
 
   uint64_t MemoryNeeded(int width, int height, int) const override {
     return static_cast<uint64_t>(width) * height *
-           (2 * sizeof(Plane) + 2 * sizeof(uint32_t));
+               (2 * sizeof(Plane) + 2 * sizeof(uint32_t)) +
+           Uploader::kBytes;
   }
 
   bool UpsamplesPriors() const override { return true; }
@@ -155,17 +158,16 @@ class CudaBackendImpl : public CudaBackend {
     random_key_ = views.random_key;
     planner_ = BandPlanner(options_.launch_seconds);
     tables_ = MakeProblemTables(views, params);
-    images_->Upload(views, stream());
+    images_->Upload(views, uploader());
     for (size_t j = 0; j < views.srcs.size(); ++j) {
       tables_.views[j].texels = images_->texels(static_cast<int>(j));
       tables_.depth_views[j].inverse_depths =
           images_->inverse_depths(static_cast<int>(j));
     }
-    color_weights_.Upload(tables_.color_weights, stream());
-    views_.Upload(tables_.views, stream());
-    depth_views_.Upload(tables_.depth_views, stream());
-    src_centers_.Upload(tables_.src_centers, stream());
-    Wait("copying tables to the card");
+    color_weights_.Upload(tables_.color_weights, uploader());
+    views_.Upload(tables_.views, uploader());
+    depth_views_.Upload(tables_.depth_views, uploader());
+    src_centers_.Upload(tables_.src_centers, uploader());
     DeviceProblem& problem = tables_.problem;
     problem.ref_grey = images_->ref_grey();
     problem.color_weights = color_weights_.data();
@@ -225,7 +227,7 @@ class CudaBackendImpl : public CudaBackend {
     control.cancel->ThrowIfCancelled();
     UseDevice();
     PhaseTimer timer(&seconds_, "score");
-    pixel_planes_.Upload(planes, stream());
+    pixel_planes_.Upload(planes, uploader());
     const ScoreLaunch launch = {&tables_.problem,
                                 pixel_planes_.data(),
                                 planes.size(),
@@ -254,6 +256,7 @@ class CudaBackendImpl : public CudaBackend {
     CheckCuda(cudaSetDevice(options_.device), "choosing the device");
   }
   cudaStream_t stream() const { return queue_->stream(); }
+  Uploader* uploader() { return &*uploader_; }
   void Wait(const char* doing) const {
     CheckCuda(cudaStreamSynchronize(stream()), doing);
   }
@@ -268,18 +271,18 @@ class CudaBackendImpl : public CudaBackend {
                         masks_.Reserve(size),
                         nullptr};
     if (!continues || resident_ != &map) {
-      if (read != Read::kNothing) planes_.Upload(map.planes, stream());
+      if (read != Read::kNothing) planes_.Upload(map.planes, uploader());
       if (read == Read::kAll) {
-        costs_.Upload(map.costs, stream());
-        masks_.Upload(map.masks, stream());
+        costs_.Upload(map.costs, uploader());
+        masks_.Upload(map.masks, uploader());
       }
     }
     resident_ = nullptr;
     if (!map.priors.empty() && map.prior_level == 0) {
-      priors_.Upload(map.priors, stream());
+      priors_.Upload(map.priors, uploader());
       state.priors = priors_.data();
     } else if (!map.priors.empty()) {
-      low_priors_.Upload(map.priors, stream());
+      low_priors_.Upload(map.priors, uploader());
       LaunchUpsample(tables_.problem,
                      low_priors_.data(),
                      map.prior_level,
@@ -288,8 +291,7 @@ class CudaBackendImpl : public CudaBackend {
       state.priors = priors_.data();
     }
     const unsigned long long zero = 0;
-    counter_.Upload(&zero, 1, stream());
-    Wait("copying maps to the card");
+    counter_.Upload(&zero, 1, uploader());
     return state;
   }
 
@@ -362,6 +364,7 @@ class CudaBackendImpl : public CudaBackend {
   CudaOptions options_;
   std::string name_;
   std::optional<LaunchQueue> queue_;
+  std::optional<Uploader> uploader_;
   std::optional<DeviceImages> images_;
   BandPlanner planner_;
   ProblemTables tables_;

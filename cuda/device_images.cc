@@ -7,15 +7,17 @@
 #include <cuda_runtime.h>
 
 namespace hpm {
+
 DeviceImages::~DeviceImages() { FreeTexture(); }
 
 const uint32_t* DeviceImages::texels(int j) const {
   return format_ == ImageFormat::kQuad ? texels_[j].data() : nullptr;
 }
 
-void DeviceImages::Upload(const ViewSet& views, cudaStream_t stream) {
+void DeviceImages::Upload(const ViewSet& views, Uploader* uploader) {
+  cudaStream_t stream = uploader->stream();
   const int num_srcs = static_cast<int>(views.srcs.size());
-  ref_.Upload(views.ref.image->data, stream);
+  ref_.Upload(views.ref.image->data, uploader);
   int width = 1, height = 1;
   for (const View& src : views.srcs) {
     width = std::max(width, src.image->width);
@@ -29,7 +31,7 @@ void DeviceImages::Upload(const ViewSet& views, cudaStream_t stream) {
   }
   for (int j = 0; j < num_srcs; ++j) {
     const GrayImage& image = *views.srcs[j].image;
-    grey_.Upload(image.data, stream);
+    grey_.Upload(image.data, uploader);
     if (quad) {
       LaunchPackTexels(grey_.data(),
                        image.width,
@@ -55,10 +57,9 @@ void DeviceImages::Upload(const ViewSet& views, cudaStream_t stream) {
   for (int j = 0; j < num_srcs; ++j) {
     if (views.srcs[j].inverse_depth == nullptr) continue;
     const InverseDepthMap& map = *views.srcs[j].inverse_depth;
-    depths_[j].Upload(map.steps, stream);
+    depths_[j].Upload(map.steps, uploader);
     inverse_depths_[j] = {depths_[j].data(), map.step};
   }
-  CheckCuda(cudaStreamSynchronize(stream), "copying images to the card");
 }
 
 void DeviceImages::MakeTexture(int width, int height, int num_layers) {

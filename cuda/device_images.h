@@ -17,8 +17,8 @@ class DeviceImages {
   DeviceImages(const DeviceImages&) = delete;
   DeviceImages& operator=(const DeviceImages&) = delete;
 
-  // Replaces what was there. Returns after the copies have left the host.
-  void Upload(const ViewSet& views, cudaStream_t stream);
+  // Replaces what was there.
+  void Upload(const ViewSet& views, Uploader* uploader);
 
   const uint8_t* ref_grey() const { return ref_.data(); }
   // Of source view j; null unless the format is kQuad.

@@ -2,10 +2,10 @@
 #pragma once
 
 #include "cuda/check.h"
+#include "cuda/uploader.h"
 
 #include <cstddef>
 #include <utility>
-#include <vector>
 
 namespace hpm {
 
@@ -35,15 +35,13 @@ class DeviceBuffer {
     return data_;
   }
 
-  void Upload(const T* from, size_t size, cudaStream_t stream) {
-    Reserve(size);
-    CheckCuda(
-        cudaMemcpyAsync(
-            data_, from, size * sizeof(T), cudaMemcpyHostToDevice, stream),
-        "copying to the card");
+  // `from` may be changed when this returns.
+  void Upload(const T* from, size_t size, Uploader* uploader) {
+    uploader->Copy(Reserve(size), from, size * sizeof(T));
   }
-  void Upload(const std::vector<T>& from, cudaStream_t stream) {
-    Upload(from.data(), from.size(), stream);
+  template <class Vector>
+  void Upload(const Vector& from, Uploader* uploader) {
+    Upload(from.data(), from.size(), uploader);
   }
 
   void Download(T* to, size_t size, cudaStream_t stream) const {

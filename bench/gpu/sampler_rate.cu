@@ -50,13 +50,14 @@ double MeasureSampleRate(const ViewSet& views,
                          int log_tile_width,
                          float spread) {
   DeviceImages images(format);
-  images.Upload(views, nullptr);
+  Uploader uploader(nullptr);
+  images.Upload(views, &uploader);
   ProblemTables tables = MakeProblemTables(views, MethodParams());
   for (size_t j = 0; j < views.srcs.size(); ++j) {
     tables.views[j].texels = images.texels(static_cast<int>(j));
   }
   DeviceBuffer<ViewGeometry> geometry;
-  geometry.Upload(tables.views, nullptr);
+  geometry.Upload(tables.views, &uploader);
   tables.problem.views = geometry.data();
   tables.problem.texture = images.texture();
   const Camera& ref = views.ref.camera;

@@ -5,17 +5,12 @@
 #include "cuda/problem_tables.h"
 #include "cuda/sweeps.h"
 #include "src/engine/backend.h"
+#include "tests/cuda/host_launch.h"
 
 #include <memory>
 #include <vector>
 
 namespace hpm {
-
-enum class EmulatedCost {
-  kCore,     // the matching cost of src/core
-  kQuad,     // the card's, exact interpolation
-  kTexture,  // the card's, interpolation of the texture unit
-};
 
 struct EmulationOptions {
   EmulatedCost cost = EmulatedCost::kCore;

@@ -1,0 +1,184 @@
+// cuda/cuda_backend.cc as it is, on a card that the host plays.
+#include "tests/cuda/made_up_card.h"
+
+#include "cuda/cuda_backend.h"
+#include "cuda/gpu_error.h"
+#include "cuda/self_test.h"
+#include "src/core/sampling_pattern.h"
+#include "src/cpu/cpu_backend.h"
+#include "tests/cuda/test_problem.h"
+
+#include <cstring>
+#include <memory>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace hpm {
+namespace {
+
+constexpr int kWidth = 29, kHeight = 19;
+
+struct Result {
+  HypothesisMap map;
+  std::vector<uint32_t> consistent;
+  std::vector<float> scores;
+  uint64_t num_evaluations = 0;
+};
+
+template <class Vector>
+bool SameBytes(const Vector& a, const Vector& b) {
+  return a.size() == b.size() &&
+         std::memcmp(a.data(), b.data(), a.size() * sizeof(a[0])) == 0;
+}
+
+void ExpectSame(const Result& a, const Result& b) {
+  EXPECT_TRUE(SameBytes(a.map.planes, b.map.planes));
+  EXPECT_TRUE(SameBytes(a.map.costs, b.map.costs));
+  EXPECT_TRUE(SameBytes(a.map.masks, b.map.masks));
+  EXPECT_EQ(a.consistent, b.consistent);
+  EXPECT_EQ(a.scores, b.scores);
+  EXPECT_EQ(a.num_evaluations, b.num_evaluations);
+}
+
+class MadeUpCardTest : public testing::Test {
+ protected:
+  void TearDown() override {
+    StartCounting();
+    LetKernelsIdle(false);
+    EXPECT_EQ(LiveAllocations(), 0);
+  }
+
+  static std::unique_ptr<CudaBackend> Make(
+      ImageFormat format = ImageFormat::kByte) {
+    CudaOptions options;
+    options.format = format;
+    return MakeCudaBackend(options);
+  }
+
+  // All kinds of start, with priors of both kinds, so that a map comes from the
+  // host, stays on the card or is changed on the way.
+  Result RunAll(Backend* backend) {
+    backend->SetViews(views_, MethodParams());
+    HypothesisMap map(kWidth, kHeight);
+    const auto run = [&](PassKind kind, StartFrom start, bool continues) {
+      const Pass pass = {kind, start, 1, pass_id_++};
+      backend->Run(pass, pattern_, &map, {&cancel_, nullptr, continues});
+    };
+    pass_id_ = 0;
+    run(PassKind::kBasic, StartFrom::kRandom, false);
+    map.priors = map.planes;
+    for (size_t i = 0; i < map.priors.size(); i += 7)
+      map.priors[i].distance = 0;
+    run(PassKind::kPrior, StartFrom::kPrior, true);
+    map.priors = {};
+    for (size_t i = 0; i < map.planes.size(); i += 5)
+      map.planes[i].distance = 0;
+    run(PassKind::kBasic, StartFrom::kMissing, false);
+    run(PassKind::kGeometric, StartFrom::kCurrent, true);
+    for (size_t i = 0; i < map.planes.size(); i += 3) {
+      map.planes[i].distance *= 1.01f;
+      map.costs[i] = 0.5f;
+    }
+    run(PassKind::kGeometric, StartFrom::kCurrent, false);
+    run(PassKind::kGeometric, StartFrom::kStored, true);
+    Result result;
+    std::vector<PixelPlane> planes;
+    for (int i = 0; i < kWidth * kHeight; i += 2)
+      planes.push_back({i % kWidth, i / kWidth, map.planes[i]});
+    result.scores = backend->Score(planes, {&cancel_, nullptr});
+    result.consistent = backend->ConsistentViews(
+        map, {0.1f, 0.05f, 1.0f, 2}, true, {&cancel_, nullptr, true});
+    result.map = map;
+    result.num_evaluations = backend->num_cost_evaluations();
+    return result;
+  }
+
+  const ViewSet views_ =
+      MakeTestViews(RenderTestViews("depth_step", kWidth, kHeight));
+  const SamplingPattern pattern_ = MakeSamplingPattern(true, true);
+  const CancelToken cancel_;
+  int pass_id_ = 0;
+};
+
+TEST_F(MadeUpCardTest, GivesTheBytesOfTheScalarCpuBackend) {
+  const auto cpu = MakeCpuBackend("scalar", 1);
+  const Result expected = RunAll(cpu.get());
+  for (const ImageFormat format : {ImageFormat::kByte, ImageFormat::kQuad}) {
+    const auto card = Make(format);
+    ExpectSame(RunAll(card.get()), expected);
+    ExpectSame(RunAll(card.get()), expected);  // with what is left from before
+  }
+}
+
+// Whichever allocation it is, the error says so, nothing is lost to others, and
+// with memory again the same object works.
+TEST_F(MadeUpCardTest, LackOfMemoryIsAnErrorWhereverItStrikes) {
+  StartCounting();
+  const Result expected = RunAll(Make().get());
+  const int num_calls = CallsOf(CardCall::kAllocate);
+  ASSERT_GT(num_calls, 10);
+  for (int i = 0; i < num_calls; ++i) {
+    LetCallFail(CardCall::kAllocate, i, cudaErrorMemoryAllocation, false);
+    std::unique_ptr<CudaBackend> card;
+    try {
+      card = Make();
+      RunAll(card.get());
+      ADD_FAILURE() << "allocation " << i;
+    } catch (const GpuError& error) {
+      EXPECT_EQ(error.code(), ErrorCode::kOutOfResources);
+    }
+    StartCounting();
+    if (card != nullptr && i % 5 == 0) ExpectSame(RunAll(card.get()), expected);
+  }
+}
+
+TEST_F(MadeUpCardTest, WithoutLockedMemoryTheDriverCopies) {
+  const Result expected = RunAll(Make().get());
+  for (int i = 0; i < 2; ++i) {
+    LetCallFail(CardCall::kLock, i, cudaErrorMemoryAllocation, false);
+    ExpectSame(RunAll(Make().get()), expected);
+  }
+}
+
+TEST_F(MadeUpCardTest, ALaunchThatFailsIsAnError) {
+  StartCounting();
+  RunAll(Make().get());
+  const int num_calls = CallsOf(CardCall::kLaunch);
+  ASSERT_GT(num_calls, 20);
+  for (int i = 0; i < num_calls; i += 3) {
+    LetCallFail(CardCall::kLaunch, i, cudaErrorInvalidConfiguration, false);
+    try {
+      RunAll(Make().get());
+      ADD_FAILURE() << "launch " << i;
+    } catch (const GpuError& error) {
+      EXPECT_EQ(error.code(), ErrorCode::kDevice);
+    }
+  }
+}
+
+// From one call on nothing answers any more; the object still goes quietly.
+TEST_F(MadeUpCardTest, ACardThatIsLostIsAnErrorWheneverItGoes) {
+  StartCounting();
+  const auto whole = Make();
+  RunAll(whole.get());
+  const int num_calls = CallsOf(CardCall::kAny);
+  for (int i = 0; i < num_calls; i += 11) {
+    LetCallFail(CardCall::kAny, i, cudaErrorDevicesUnavailable, true);
+    try {
+      RunAll(Make().get());
+      ADD_FAILURE() << "call " << i;
+    } catch (const GpuError& error) {
+      EXPECT_EQ(error.code(), ErrorCode::kDevice) << i;
+    }
+  }
+}
+
+TEST_F(MadeUpCardTest, TheSelfTestRefusesACardThatDoesNothing) {
+  EXPECT_EQ(SelfTestFailure(Make().get()), "");
+  LetKernelsIdle(true);
+  EXPECT_NE(SelfTestFailure(Make().get()), "");
+}
+
+}  // namespace
+}  // namespace hpm
