@@ -3,6 +3,7 @@
 #include "src/base/error.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <memory>
 
@@ -14,7 +15,19 @@ namespace {
 // Where COLMAP's ray of (col, row) meets the library's pixel grid.
 constexpr float kColmapShift = -0.5f;
 
-// The files of an image, in bands of rows: neither is ever in memory as a whole.
+// do_band(first_row, num_rows), by several threads.
+template <class DoBand>
+void ForEachBand(int width, int height, const DoBand& do_band) {
+  constexpr int kBandPixels = 1 << 14;
+  const int band_rows = std::clamp(kBandPixels / width, 1, height);
+  tbb::parallel_for(0, (height + band_rows - 1) / band_rows, [&](int band) {
+    const int begin = band * band_rows;
+    do_band(begin, std::min(band_rows, height - begin));
+  });
+}
+
+// The files of an image, in bands of rows: neither is ever in memory as a
+// whole.
 class MapPair {
  public:
   MapPair(const std::filesystem::path& depth_path,
@@ -29,14 +42,8 @@ class MapPair {
   // the plane at the pixel's centre, the distance 0 where there is no depth.
   template <class Visit>
   void ForEachPlane(const Visit& visit) const {
-    constexpr int kBandPixels = 1 << 14;
     const int width = camera_.width;
-    const int height = camera_.height;
-    const int band_rows = std::clamp(kBandPixels / width, 1, height);
-    const int num_bands = (height + band_rows - 1) / band_rows;
-    tbb::parallel_for(0, num_bands, [&](int band) {
-      const int begin = band * band_rows;
-      const int num_rows = std::min(band_rows, height - begin);
+    ForEachBand(width, camera_.height, [&](int begin, int num_rows) {
       const size_t size = static_cast<size_t>(num_rows) * width;
       std::vector<float> values(4 * size);
       depth_.ReadRows(0, begin, num_rows, values.data());
@@ -51,10 +58,8 @@ class MapPair {
                                        static_cast<float>(row) + kColmapShift,
                                        at[0],
                                        normal);
-          const float z = DepthAt(camera_,
-                                  plane,
-                                  static_cast<float>(col),
-                                  static_cast<float>(row));
+          const float z = DepthAt(
+              camera_, plane, static_cast<float>(col), static_cast<float>(row));
           if (!(at[0] > 0 && std::isfinite(z) && z > 0 && plane.distance > 0))
             plane = {{0, 0, 0}, 0};
           visit(col, row, plane, z);
@@ -81,30 +86,46 @@ class MapPair {
 
 }  // namespace
 
-DepthAndNormal ToColmapMaps(const HypothesisMap& map,
-                            const Camera& camera,
-                            const std::vector<bool>* keep) {
-  const size_t size = map.planes.size();
-  DepthAndNormal out;
-  out.depth = {map.width, map.height, 1, std::vector<float>(size, 0.0f)};
-  out.normal = {map.width, map.height, 3, std::vector<float>(3 * size, 0.0f)};
-  for (int row = 0; row < map.height; ++row) {
-    for (int col = 0; col < map.width; ++col) {
-      const size_t i = static_cast<size_t>(row) * map.width + col;
-      const Plane& plane = map.planes[i];
-      if (!(plane.distance > 0) || (keep != nullptr && !(*keep)[i])) continue;
-      const float z = DepthAt(camera,
-                              plane,
-                              static_cast<float>(col) + kColmapShift,
-                              static_cast<float>(row) + kColmapShift);
-      if (!std::isfinite(z) || !(z > 0)) continue;
-      out.depth.data[i] = z;
-      out.normal.data[i] = plane.normal.x;
-      out.normal.data[size + i] = plane.normal.y;
-      out.normal.data[2 * size + i] = plane.normal.z;
+WrittenDepths WritePlanes(const HypothesisMap& map,
+                          const Camera& camera,
+                          const DepthRange& range,
+                          const std::vector<bool>* keep,
+                          MapWriter* depth,
+                          MapWriter* normal) {
+  std::atomic<size_t> num_valid{0}, num_dropped{0};
+  ForEachBand(map.width, map.height, [&](int begin, int num_rows) {
+    const size_t size = static_cast<size_t>(num_rows) * map.width;
+    std::vector<float> values(4 * size, 0.0f);
+    size_t band_valid = 0, band_dropped = 0;
+    float* at = values.data();
+    size_t i = static_cast<size_t>(begin) * map.width;
+    for (int row = begin; row < begin + num_rows; ++row) {
+      for (int col = 0; col < map.width; ++col, ++i, ++at) {
+        const Plane& plane = map.planes[i];
+        if (!(plane.distance > 0) || (keep != nullptr && !(*keep)[i])) continue;
+        const float z = DepthAt(camera,
+                                plane,
+                                static_cast<float>(col) + kColmapShift,
+                                static_cast<float>(row) + kColmapShift);
+        if (!std::isfinite(z) || !(z > 0)) continue;
+        if (!(z >= range.min && z <= range.max)) {
+          ++band_dropped;
+          continue;
+        }
+        ++band_valid;
+        at[0] = z;
+        at[size] = plane.normal.x;
+        at[2 * size] = plane.normal.y;
+        at[3 * size] = plane.normal.z;
+      }
     }
-  }
-  return out;
+    depth->WriteRows(0, begin, num_rows, values.data());
+    for (int axis = 0; axis < 3; ++axis)
+      normal->WriteRows(axis, begin, num_rows, &values[(1 + axis) * size]);
+    num_valid += band_valid;
+    num_dropped += band_dropped;
+  });
+  return {num_valid, num_dropped};
 }
 
 size_t DropOutside(const DepthRange& range, DepthAndNormal* maps) {
@@ -121,15 +142,15 @@ size_t DropOutside(const DepthRange& range, DepthAndNormal* maps) {
   return num_dropped;
 }
 
-std::vector<Plane> ReadPlanes(const std::filesystem::path& depth_path,
-                              const std::filesystem::path& normal_path,
-                              const Camera& camera) {
+void ReadPlanes(const std::filesystem::path& depth_path,
+                const std::filesystem::path& normal_path,
+                const Camera& camera,
+                std::vector<Plane>* planes) {
   const MapPair maps(depth_path, normal_path, camera);
-  std::vector<Plane> planes(static_cast<size_t>(camera.width) * camera.height);
+  planes->resize(static_cast<size_t>(camera.width) * camera.height);
   maps.ForEachPlane([&](int col, int row, const Plane& plane, float) {
-    planes[static_cast<size_t>(row) * camera.width + col] = plane;
+    (*planes)[static_cast<size_t>(row) * camera.width + col] = plane;
   });
-  return planes;
 }
 
 InverseDepthMap ReadInverseDepths(const std::filesystem::path& depth_path,

@@ -21,20 +21,30 @@ struct DepthAndNormal {
   Map normal;
 };
 
-// Pixels whose plane does not meet COLMAP's ray in front of the camera, and
-// pixels with keep[i] == false (if given), become 0.
-DepthAndNormal ToColmapMaps(const HypothesisMap& map,
-                            const Camera& camera,
-                            const std::vector<bool>* keep = nullptr);
+struct WrittenDepths {
+  size_t num_valid = 0;
+  size_t num_dropped = 0;  // outside the range
+};
+
+// Writes all rows; the caller commits. Pixels whose plane does not meet
+// COLMAP's ray in front of the camera, whose depth is outside `range` or that
+// have keep[i] == false (if given) become 0.
+WrittenDepths WritePlanes(const HypothesisMap& map,
+                          const Camera& camera,
+                          const DepthRange& range,
+                          const std::vector<bool>* keep,
+                          MapWriter* depth,
+                          MapWriter* normal);
 
 // Depths outside `range` become 0, their normals, too. Returns how many.
 size_t DropOutside(const DepthRange& range, DepthAndNormal* maps);
 
 // Planes through the stored points; distance 0 where there is no depth. Throws
 // Error(kBadInput) naming the file that is damaged or not of the camera's size.
-std::vector<Plane> ReadPlanes(const std::filesystem::path& depth_path,
-                              const std::filesystem::path& normal_path,
-                              const Camera& camera);
+void ReadPlanes(const std::filesystem::path& depth_path,
+                const std::filesystem::path& normal_path,
+                const Camera& camera,
+                std::vector<Plane>* planes);
 
 // The same files, but only 1/z at the centres of the pixels of the camera
 // halved `more_levels` times; takes less memory. A coarse pixel has the plane

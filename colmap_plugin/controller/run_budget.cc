@@ -41,12 +41,13 @@ MemoryNeeds LargestNeeds(const Workspace& workspace,
       decoded = std::max(decoded, DecodedBytes(workspace, src));
       inputs += pixels_of(src) * (geometric ? 1 + kInverseDepthBytes : 1);
     }
-    const uint64_t maps_being_written = ref_pixels * 4 * sizeof(float);
+    // For previews, consistency graphs and cuts to a range.
+    const uint64_t maps_read_back = ref_pixels * 4 * sizeof(float);
     const uint64_t working =
         backend.MemoryNeeded(ref.width,
                              ref.height,
                              static_cast<int>(problem.src_images.size())) +
-        maps_being_written + decoded;
+        maps_read_back + decoded;
     needs.working = std::max(needs.working, working);
     needs.inputs = std::max(needs.inputs, inputs);
     needs.decoding = std::max(needs.decoding, decoded);
@@ -80,8 +81,9 @@ int ImagesInMemory(const MemoryNeeds& needs, int most, uint64_t limit) {
 }
 
 int DecodesAtOnce(const MemoryNeeds& needs) {
-  // Decoders of progressive files take about twice as much again.
-  constexpr uint64_t kWithDecoder = 3;
+  // Decoders of progressive files take about twice as much again, and the
+  // hypotheses of the image before stay.
+  constexpr uint64_t kWithDecoder = 4;
   constexpr uint64_t kMost = 8;
   const uint64_t fit =
       needs.working / std::max<uint64_t>(kWithDecoder * needs.decoding, 1);

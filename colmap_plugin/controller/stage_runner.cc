@@ -14,10 +14,12 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
+#include <tbb/parallel_invoke.h>
 
 namespace hpm {
 namespace {
@@ -78,10 +80,9 @@ StageResult StageRunner::Run(int stage,
     PhaseTimer timer(&result.seconds, "read");
     views = MakeViews(stage, problem);
   }
-  HypothesisMap map;
   {
     PhaseTimer timer(&result.seconds, "read");
-    map = StartMap(stage, problem, views);
+    StartMap(stage, problem, views);
   }
   RunStage(backend_,
            views,
@@ -89,9 +90,9 @@ StageResult StageRunner::Run(int stage,
            plan_.stages()[stage].spec,
            params_,
            control,
-           &map,
+           &map_,
            &result.seconds);
-  Publish(stage, problem, map, views, control, &result);
+  Publish(stage, problem, views, control, &result);
   return result;
 }
 
@@ -148,34 +149,37 @@ void StageRunner::AddDepths(int stage,
   }
 }
 
-HypothesisMap StageRunner::StartMap(int stage,
-                                    int problem,
-                                    const ViewSet& views) const {
+void StageRunner::StartMap(int stage, int problem, const ViewSet& views) {
   const Camera& camera = views.ref.camera;
   const StageSpec& spec = plan_.stages()[stage].spec;
   if (!spec.geometric && !spec.from_coarser) {
-    return HypothesisMap(camera.width, camera.height);
+    map_.Reset(camera.width, camera.height);
+    return;
   }
+  map_.ResetAllButPlanes(camera.width, camera.height);
   const int image = problems_[problem].ref_image;
   const StageFiles files = plan_.Files(stage - 1, image);
-  std::vector<Plane> planes = ReadPlanes(
-      files.depth, files.normal, plan_.CameraOf(stage - 1, image));
-  if (!spec.geometric) {
-    planes = UpsamplePrior(planes,
-                           1,
-                           camera,
-                           *views.ref.image,
-                           {views.depth_min, views.depth_max});
+  const Camera previous = plan_.CameraOf(stage - 1, image);
+  if (spec.geometric) {
+    ReadPlanes(files.depth, files.normal, previous, &map_.planes);
+    return;
   }
-  return HypothesisMap(camera.width, camera.height, std::move(planes));
+  std::vector<Plane> coarse;
+  ReadPlanes(files.depth, files.normal, previous, &coarse);
+  UpsamplePrior(coarse,
+                1,
+                camera,
+                *views.ref.image,
+                {views.depth_min, views.depth_max},
+                &map_.planes);
 }
 
 void StageRunner::Publish(int stage,
                           int problem,
-                          const HypothesisMap& map,
                           const ViewSet& views,
                           const RunControl& control,
                           StageResult* result) {
+  const HypothesisMap& map = map_;
   const Stage& info = plan_.stages()[stage];
   const int image = problems_[problem].ref_image;
   const bool filter = info.is_final && options_.patch_match.filter;
@@ -211,20 +215,6 @@ void StageRunner::Publish(int stage,
   backend_->ForgetViews();
 
   PhaseTimer timer(&result->seconds, "write");
-  DepthAndNormal maps =
-      ToColmapMaps(map, views.ref.camera, filter ? &keep : nullptr);
-  if (info.is_final) {
-    const size_t num_dropped = DropOutside(problems_[problem].published, &maps);
-    if (num_dropped > 0) {
-      result->losses[FilterCriterion::kRange] =
-          static_cast<double>(num_dropped) /
-          static_cast<double>(maps.depth.data.size());
-    }
-  }
-  result->valid_pixel_share =
-      1.0 - static_cast<double>(std::count(
-                maps.depth.data.begin(), maps.depth.data.end(), 0.0f)) /
-                static_cast<double>(maps.depth.data.size());
   const std::string& name = workspace_.ImageName(image);
   const bool is_public = plan_.IsPublic(stage, image);
   const std::string stage_name = plan_.NameOf(stage, image);
@@ -238,13 +228,17 @@ void StageRunner::Publish(int stage,
     std::error_code ignored;
     std::filesystem::remove(files.graph, ignored);
   }
-  WriteMap(files.normal, maps.normal);
-  lock_.ThrowIfLost();
-  WriteMap(files.depth, maps.depth);
+  constexpr DepthRange kAll = {0, std::numeric_limits<float>::infinity()};
+  WriteMaps(views.ref.camera,
+            info.is_final ? problems_[problem].published : kAll,
+            filter ? &keep : nullptr,
+            files,
+            result);
   if (plan_.WritesGraph(stage, image)) {
     ConsistencyGraph graph = {map.width, map.height, {}};
+    const Map depth = ReadMap(files.depth);
     for (size_t i = 0; i < consistent.size(); ++i) {
-      if (consistent[i] == 0 || maps.depth.data[i] == 0) continue;
+      if (consistent[i] == 0 || depth.data[i] == 0) continue;
       graph.data.push_back(static_cast<int32_t>(i % map.width));
       graph.data.push_back(static_cast<int32_t>(i / map.width));
       graph.data.push_back(__builtin_popcount(consistent[i]));
@@ -255,7 +249,9 @@ void StageRunner::Publish(int stage,
     WriteConsistencyGraph(files.graph, graph);
   }
   if (options_.hpm.previews && info.is_final) {
-    WritePreviews(workspace_.StereoPath() / "previews", name, maps);
+    WritePreviews(workspace_.StereoPath() / "previews",
+                  name,
+                  {ReadMap(files.depth), ReadMap(files.normal)});
   }
   lock_.ThrowIfLost();
   WriteStamp(workspace_.StatePath(),
@@ -264,6 +260,30 @@ void StageRunner::Publish(int stage,
              misses_maps_ ? plan_.IncompleteFingerprintOf(stage, problem)
                           : plan_.FingerprintOf(stage, problem),
              ToJson(*result));
+}
+
+void StageRunner::WriteMaps(const Camera& camera,
+                            const DepthRange& range,
+                            const std::vector<bool>* keep,
+                            const StageFiles& files,
+                            StageResult* result) {
+  const int width = map_.width, height = map_.height;
+  MapWriter normal(files.normal, {width, height, 3});
+  MapWriter depth(files.depth, {width, height, 1});
+  const WrittenDepths written =
+      WritePlanes(map_, camera, range, keep, &depth, &normal);
+  // The disk may take both at once; their names appear in this order.
+  tbb::parallel_invoke([&] { normal.Flush(); }, [&] { depth.Flush(); });
+  normal.Commit();
+  lock_.ThrowIfLost();
+  depth.Commit();
+  const auto size = static_cast<double>(map_.planes.size());
+  const size_t num_without = map_.planes.size() - written.num_valid;
+  result->valid_pixel_share = 1.0 - static_cast<double>(num_without) / size;
+  if (written.num_dropped > 0) {
+    result->losses[FilterCriterion::kRange] =
+        static_cast<double>(written.num_dropped) / size;
+  }
 }
 
 }  // namespace hpm

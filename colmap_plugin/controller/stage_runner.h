@@ -46,15 +46,20 @@ class StageRunner {
   void AddDepths(int stage,
                  const std::vector<ImageRequest>& images,
                  ViewSet* views);
-  // The hypotheses the stage starts from: none, those of the stage before, or
-  // those of the coarser level upsampled.
-  HypothesisMap StartMap(int stage, int problem, const ViewSet& views) const;
+  // Makes map_ the hypotheses the stage starts from: none, those of the stage
+  // before, or those of the coarser level upsampled.
+  void StartMap(int stage, int problem, const ViewSet& views);
   void Publish(int stage,
                int problem,
-               const HypothesisMap& map,
                const ViewSet& views,
                const RunControl& control,
                StageResult* result);
+  // Writes map_.
+  void WriteMaps(const Camera& camera,
+                 const DepthRange& range,
+                 const std::vector<bool>* keep,
+                 const StageFiles& files,
+                 StageResult* result);
 
   const Workspace& workspace_;
   const std::vector<StereoProblem>& problems_;
@@ -66,6 +71,8 @@ class StageRunner {
   Backend* backend_;
   const LogSink& log_;
   const MethodParams params_;
+  // Of the current problem; its memory stays for the next.
+  HypothesisMap map_;
   // Of the current problem: sources without depth maps, and whether one that
   // should have them lacks them, or has them from incomplete inputs.
   int num_without_maps_ = 0;

@@ -96,9 +96,26 @@ AtomicFile::~AtomicFile() {
 }
 
 void AtomicFile::Write(const void* data, size_t num_bytes) {
+  WriteAll(data, num_bytes, [this](const char* bytes, size_t count) {
+    return write(fd_, bytes, count);
+  });
+}
+
+void AtomicFile::WriteAt(uint64_t offset, const void* data, size_t num_bytes) {
+  WriteAll(data, num_bytes, [&](const char* bytes, size_t count) {
+    const auto done = bytes - static_cast<const char*>(data);
+    return pwrite(fd_, bytes, count, static_cast<off_t>(offset) + done);
+  });
+}
+
+// write_some(bytes, count): as write(2).
+template <class WriteSome>
+void AtomicFile::WriteAll(const void* data,
+                          size_t num_bytes,
+                          const WriteSome& write_some) {
   const char* bytes = static_cast<const char*>(data);
   while (num_bytes > 0) {
-    const ssize_t n = write(fd_, bytes, num_bytes);
+    const ssize_t n = write_some(bytes, num_bytes);
     if (n < 0) {
       if (errno == EINTR) continue;
       Throw("write", errno);
@@ -109,12 +126,16 @@ void AtomicFile::Write(const void* data, size_t num_bytes) {
   }
 }
 
-void AtomicFile::Commit() {
+void AtomicFile::Flush() {
   int result;
   do {
     result = fsync(fd_);
   } while (result != 0 && errno == EINTR);
   if (result != 0) Throw("write", errno);
+}
+
+void AtomicFile::Commit() {
+  Flush();
   // Linux closes the descriptor even if close() fails. EINTR is harmless after
   // fsync.
   const int fd = fd_;
@@ -147,7 +168,7 @@ void AtomicFile::Throw(const char* action, int error) const {
       remedy = fmt::format(
           "{} bytes were written, {}; make room (disk, quota or file size "
           "limit) and run again",
-          num_written_,
+          num_written_.load(),
           FreeSpace(ParentFolder(path_)));
       break;
     case EMFILE:

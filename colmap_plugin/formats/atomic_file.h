@@ -5,6 +5,7 @@
 // program must ignore SIGXFSZ, otherwise a file size limit kills it.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -24,6 +25,11 @@ class AtomicFile {
 
   void Write(const void* data, size_t num_bytes);
   void Write(std::string_view text) { Write(text.data(), text.size()); }
+  // Several threads may do so at once; Write() goes on where it was.
+  void WriteAt(uint64_t offset, const void* data, size_t num_bytes);
+
+  // What was written is on the disk then, so that Commit() has little to do.
+  void Flush();
 
   // Publishes the file. Throws Error(kOutOfResources) on a full disk or quota,
   // naming the file; nothing is left under the final name then (an older file
@@ -31,12 +37,16 @@ class AtomicFile {
   void Commit();
 
  private:
+  template <class WriteSome>
+  void WriteAll(const void* data,
+                size_t num_bytes,
+                const WriteSome& write_some);
   [[noreturn]] void Throw(const char* action, int error) const;
 
   std::filesystem::path path_;
   std::filesystem::path temporary_;  // empty once it was renamed
   int fd_ = -1;
-  uint64_t num_written_ = 0;
+  std::atomic<uint64_t> num_written_{0};
 };
 
 void WriteFileAtomically(const std::filesystem::path& path,

@@ -1,12 +1,13 @@
 #include "colmap_plugin/formats/map_file.h"
 
-#include "colmap_plugin/formats/atomic_file.h"
 #include "colmap_plugin/formats/grid_header.h"
 #include "src/base/error.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
+#include <string>
 
 #include <fmt/format.h>
 
@@ -36,33 +37,35 @@ void CheckNumValues(const InputFile& file, const GridHeader& header) {
   }
 }
 
-void CheckWritable(const std::filesystem::path& path, const Map& map) {
-  const auto fail = [&](const std::string& what) {
-    throw Error(ErrorCode::kFailure,
-                fmt::format("refused to write {}: {}; please report this",
-                            path.string(),
-                            what));
-  };
+[[noreturn]] void RefuseToWrite(const std::filesystem::path& path,
+                                const std::string& what) {
+  throw Error(
+      ErrorCode::kFailure,
+      fmt::format(
+          "refused to write {}: {}; please report this", path.string(), what));
+}
+
+void CheckSize(const std::filesystem::path& path, const Map& map) {
   if (map.width <= 0 || map.height <= 0 || map.channels <= 0)
-    fail("the map has no size");
+    RefuseToWrite(path, "the map has no size");
   const size_t num_pixels =
       static_cast<size_t>(map.width) * static_cast<size_t>(map.height);
   if (map.data.size() / num_pixels != static_cast<size_t>(map.channels) ||
       map.data.size() % num_pixels != 0) {
-    fail("the number of values does not match the size");
+    RefuseToWrite(path, "the number of values does not match the size");
   }
-  const auto bad =
-      std::find_if_not(map.data.begin(), map.data.end(), [](float value) {
-        return std::isfinite(value);
-      });
-  if (bad != map.data.end()) {
-    const size_t pixel =
-        static_cast<size_t>(bad - map.data.begin()) % num_pixels;
-    const size_t width = static_cast<size_t>(map.width);
-    fail(fmt::format("the value at column {}, row {} is not finite",
-                     pixel % width,
-                     pixel / width));
+}
+
+// Without a branch, so that the compiler looks at several at once.
+bool AreFinite(const float* values, size_t count) {
+  constexpr uint32_t kExponent = 0x7f800000;
+  uint32_t num_others = 0;
+  for (size_t i = 0; i < count; ++i) {
+    uint32_t bits;
+    std::memcpy(&bits, &values[i], sizeof(bits));
+    num_others |= (bits & kExponent) == kExponent;
   }
+  return num_others == 0;
 }
 
 }  // namespace
@@ -103,12 +106,46 @@ Map ReadMap(const std::filesystem::path& path) {
   return map;
 }
 
+MapWriter::MapWriter(const std::filesystem::path& path, const MapHeader& header)
+    : path_(path), header_(header), file_(path) {
+  const std::string text =
+      FormatGridHeader(header.width, header.height, header.channels);
+  header_bytes_ = text.size();
+  file_.Write(text);
+}
+
+void MapWriter::WriteRows(int channel,
+                          int row,
+                          int num_rows,
+                          const float* values) {
+  const size_t width = header_.width;
+  const size_t count = num_rows * width;
+  if (!AreFinite(values, count)) {
+    const auto bad = static_cast<size_t>(
+        std::find_if_not(values,
+                         values + count,
+                         [](float value) { return std::isfinite(value); }) -
+        values);
+    RefuseToWrite(path_,
+                  fmt::format("the value at column {}, row {} is not finite",
+                              bad % width,
+                              row + bad / width));
+  }
+  const uint64_t first_row = uint64_t{1} * channel * header_.height + row;
+  file_.WriteAt(header_bytes_ + first_row * width * sizeof(float),
+                values,
+                count * sizeof(float));
+}
+
 void WriteMap(const std::filesystem::path& path, const Map& map) {
-  CheckWritable(path, map);
-  AtomicFile file(path);
-  file.Write(FormatGridHeader(map.width, map.height, map.channels));
-  file.Write(map.data.data(), map.data.size() * sizeof(float));
-  file.Commit();
+  CheckSize(path, map);
+  const size_t num_pixels = map.data.size() / map.channels;
+  MapWriter writer(path, {map.width, map.height, map.channels});
+  for (int channel = 0; channel < map.channels; ++channel) {
+    writer.WriteRows(
+        channel, 0, map.height, map.data.data() + channel * num_pixels);
+  }
+  writer.Commit();
 }
 
 }  // namespace hpm

@@ -2,6 +2,7 @@
 // float32, channel by channel, row by row.
 #pragma once
 
+#include "colmap_plugin/formats/atomic_file.h"
 #include "colmap_plugin/formats/input_file.h"
 
 #include <filesystem>
@@ -50,6 +51,26 @@ class MapReader {
 // As ReadMapHeader, then the values; allocates only after the length is
 // checked.
 Map ReadMap(const std::filesystem::path& path);
+
+// Writes a map in parts, which several threads may do at once; it appears when
+// all are there (see atomic_file.h). Throws Error(kFailure) on values that are
+// not finite, Error(kOutOfResources) on a full disk.
+class MapWriter {
+ public:
+  MapWriter(const std::filesystem::path& path, const MapHeader& header);
+
+  // So many rows of one channel.
+  void WriteRows(int channel, int row, int num_rows, const float* values);
+
+  void Flush() { file_.Flush(); }
+  void Commit() { file_.Commit(); }
+
+ private:
+  std::filesystem::path path_;
+  MapHeader header_;
+  uint64_t header_bytes_;
+  AtomicFile file_;
+};
 
 // Atomic: writes a temporary file beside `path`, then renames (see
 // atomic_file.h). Throws Error(kFailure) on non-finite values,

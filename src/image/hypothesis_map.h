@@ -4,9 +4,9 @@
 
 #include "src/core/pixel_state.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 namespace hpm {
@@ -30,17 +30,25 @@ struct HypothesisMap {
   int prior_level = 0;
 
   HypothesisMap() = default;
-  HypothesisMap(int w, int h)
-      : HypothesisMap(w,
-                      h,
-                      std::vector<Plane>(static_cast<size_t>(w) * h,
-                                         Plane{{0, 0, 0}, 0})) {}
-  HypothesisMap(int w, int h, std::vector<Plane> start)
-      : width(w),
-        height(h),
-        planes(std::move(start)),
-        costs(planes.size(), kMaxCost),
-        masks(planes.size(), 0) {}
+  HypothesisMap(int w, int h) { Reset(w, h); }
+
+  // As new, but in the memory it has: fresh memory is slow to come by. The
+  // planes of a map of the same size stay for the caller to replace.
+  void ResetAllButPlanes(int w, int h) {
+    width = w;
+    height = h;
+    const size_t size = static_cast<size_t>(w) * h;
+    planes.resize(size);
+    costs.assign(size, kMaxCost);
+    masks.assign(size, 0);
+    priors.clear();
+    unexplained.clear();
+    prior_level = 0;
+  }
+  void Reset(int w, int h) {
+    ResetAllButPlanes(w, h);
+    std::fill(planes.begin(), planes.end(), Plane{{0, 0, 0}, 0});
+  }
 
   PixelState View() {
     return {width,

@@ -20,7 +20,9 @@ std::vector<Plane> BuildPrior(const HypothesisMap& map,
                               const PriorRange& range) {
   std::vector<Plane> planes = BuildLevelPrior(map, camera, level, range);
   if (level == 0) return planes;
-  return UpsamplePrior(planes, level, camera, guide, range);
+  std::vector<Plane> prior;
+  UpsamplePrior(planes, level, camera, guide, range, &prior);
+  return prior;
 }
 
 }  // namespace hpm

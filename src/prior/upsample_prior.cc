@@ -44,20 +44,21 @@ class SpatialWeights {
 
 }  // namespace
 
-std::vector<Plane> UpsamplePrior(const std::vector<Plane>& planes,
-                                 int level,
-                                 const Camera& camera,
-                                 const GrayImage& guide,
-                                 const PriorRange& range) {
+void UpsamplePrior(const std::vector<Plane>& planes,
+                   int level,
+                   const Camera& camera,
+                   const GrayImage& guide,
+                   const PriorRange& range,
+                   std::vector<Plane>* result) {
   const SpatialWeights spatial_weight(level);
   float color_weight[256];
   for (int d = 0; d < 256; ++d) color_weight[d] = UpsampleColorWeight(d);
-  std::vector<Plane> result(static_cast<size_t>(camera.width) * camera.height);
+  result->resize(static_cast<size_t>(camera.width) * camera.height);
   tbb::parallel_for(
       tbb::blocked_range<int>(0, camera.height), [&](const auto& rows) {
         for (int row = rows.begin(); row < rows.end(); ++row) {
           for (int col = 0; col < camera.width; ++col) {
-            result[static_cast<size_t>(row) * camera.width + col] =
+            (*result)[static_cast<size_t>(row) * camera.width + col] =
                 UpsamplePlaneAt(
                     planes.data(),
                     level,
@@ -72,7 +73,6 @@ std::vector<Plane> UpsamplePrior(const std::vector<Plane>& planes,
           }
         }
       });
-  return result;
 }
 
 }  // namespace hpm

@@ -10,11 +10,12 @@
 namespace hpm {
 
 // planes: one per pixel of LevelCamera(camera, level). Result: one per pixel of
-// `camera`, distance 0 = none.
-std::vector<Plane> UpsamplePrior(const std::vector<Plane>& planes,
-                                 int level,
-                                 const Camera& camera,
-                                 const GrayImage& guide,
-                                 const PriorRange& range);
+// `camera`, distance 0 = none, in the memory it has.
+void UpsamplePrior(const std::vector<Plane>& planes,
+                   int level,
+                   const Camera& camera,
+                   const GrayImage& guide,
+                   const PriorRange& range,
+                   std::vector<Plane>* result);
 
 }  // namespace hpm

@@ -1,7 +1,7 @@
 #include "colmap_plugin/controller/input_cache.h"
 
-#include "colmap_plugin/controller/ray_convention.h"
 #include "tests/colmap_plugin/controller/scene_workspace.h"
+#include "tests/colmap_plugin/controller/written_maps.h"
 
 #include <thread>
 #include <vector>
@@ -54,13 +54,11 @@ class InputCacheTest : public testing::Test {
                                      truth.depth[i],
                                      truth.normals[i]);
     }
-    const DepthAndNormal maps = ToColmapMaps(map, camera);
     const StageFiles files = {
         workspace_.MapPath(image, MapKind::kDepth, "photometric"),
         workspace_.MapPath(image, MapKind::kNormal, "photometric"),
         {}};
-    WriteMap(files.depth, maps.depth);
-    WriteMap(files.normal, maps.normal);
+    WriteMaps(map, camera, files.depth, files.normal);
     return files;
   }
 

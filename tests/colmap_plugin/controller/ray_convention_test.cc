@@ -1,6 +1,6 @@
 #include "colmap_plugin/controller/ray_convention.h"
 
-#include "tests/base/scratch_folder.h"
+#include "tests/colmap_plugin/controller/written_maps.h"
 
 #include <cmath>
 #include <random>
@@ -49,38 +49,36 @@ HypothesisMap RandomPlanes() {
   return map;
 }
 
-// What the files give back.
+// What the program reads from the files it wrote.
 class RayConvention : public testing::Test {
  protected:
-  void Write(const DepthAndNormal& files) {
-    WriteMap(folder_.path() / "depth.bin", files.depth);
-    WriteMap(folder_.path() / "normal.bin", files.normal);
-  }
-  std::vector<Plane> Planes(const DepthAndNormal& files) {
-    Write(files);
-    return ReadPlanes(
-        folder_.path() / "depth.bin", folder_.path() / "normal.bin", kCamera);
+  std::vector<Plane> Planes(const HypothesisMap& map,
+                            const std::vector<bool>* keep = nullptr) {
+    WriteMaps(map, kCamera, depth_path_, normal_path_, keep);
+    std::vector<Plane> planes(3, Plane{{1, 1, 1}, 1});  // of a map before
+    ReadPlanes(depth_path_, normal_path_, kCamera, &planes);
+    return planes;
   }
   std::vector<float> InverseDepths(const HypothesisMap& map, int more_levels) {
-    Write(ToColmapMaps(map, kCamera));
+    WriteMaps(map, kCamera, depth_path_, normal_path_);
     const InverseDepthMap inverse =
-        ReadInverseDepths(folder_.path() / "depth.bin",
-                          folder_.path() / "normal.bin",
-                          kCamera,
-                          more_levels);
+        ReadInverseDepths(depth_path_, normal_path_, kCamera, more_levels);
     std::vector<float> values(inverse.steps.size() / kInverseDepthBytes);
-    for (size_t i = 0; i < values.size(); ++i)
-      values[i] = inverse.step * InverseDepthSteps(inverse.steps.data(), i);
+    for (size_t i = 0; i < values.size(); ++i) {
+      values[i] = inverse.step * static_cast<float>(InverseDepthSteps(
+                                     inverse.steps.data(), i));
+    }
     return values;
   }
 
   ScratchFolder folder_;
+  std::filesystem::path depth_path_ = folder_ / "depth.bin";
+  std::filesystem::path normal_path_ = folder_ / "normal.bin";
 };
 
 TEST_F(RayConvention, RoundTripIsExactToRounding) {
   const HypothesisMap map = RandomPlanes();
-  const DepthAndNormal files = ToColmapMaps(map, kCamera);
-  const std::vector<Plane> back = Planes(files);
+  const std::vector<Plane> back = Planes(map);
   for (size_t i = 0; i < map.planes.size(); ++i) {
     EXPECT_EQ(Norm(back[i].normal - map.planes[i].normal), 0);
     EXPECT_NEAR(back[i].distance / map.planes[i].distance, 1, 1e-6);
@@ -96,12 +94,47 @@ TEST_F(RayConvention, DropsDepthsOutsideARangeWithTheirNormals) {
     EXPECT_EQ(maps.normal.data[i], maps.depth.data[i % 4] > 0 ? 0.5f : 0);
 }
 
+TEST_F(RayConvention, DepthsOutsideARangeAreNotWritten) {
+  const HypothesisMap map = RandomPlanes();
+  const DepthAndNormal all = WrittenMaps(map, kCamera);
+  const WrittenDepths written =
+      WriteMaps(map, kCamera, depth_path_, normal_path_, nullptr, {3, 5});
+  const Map depth = ReadMap(depth_path_), normal = ReadMap(normal_path_);
+  const size_t size = depth.data.size();
+  size_t num_valid = 0;
+  for (size_t i = 0; i < size; ++i) {
+    const bool inside = all.depth.data[i] >= 3 && all.depth.data[i] <= 5;
+    num_valid += inside;
+    EXPECT_EQ(depth.data[i], inside ? all.depth.data[i] : 0);
+    EXPECT_EQ(normal.data[i] != 0, inside);
+  }
+  EXPECT_EQ(written.num_valid, num_valid);
+  EXPECT_EQ(written.num_dropped, size - num_valid);
+}
+
+// Several bands of rows, the last of which is not full.
+TEST_F(RayConvention, ALargeMapIsWrittenAndReadAsAWhole) {
+  Camera camera = kCamera;
+  camera.width = 1000;
+  camera.height = 101;
+  HypothesisMap map(camera.width, camera.height);
+  for (size_t i = 0; i < map.planes.size(); ++i) {
+    map.planes[i] = {Normalized({0.01f, 0.02f, -1}),
+                     1 + static_cast<float>(i % 977) / 977};
+  }
+  WriteMaps(map, camera, depth_path_, normal_path_);
+  std::vector<Plane> back;
+  ReadPlanes(depth_path_, normal_path_, camera, &back);
+  ASSERT_EQ(back.size(), map.planes.size());
+  for (size_t i = 0; i < back.size(); ++i)
+    ASSERT_NEAR(back[i].distance, map.planes[i].distance, 1e-5) << i;
+}
+
 TEST_F(RayConvention, RoundTripsDoNotDrift) {
   HypothesisMap map = RandomPlanes();
   const HypothesisMap first = map;
   for (int i = 0; i < 20; ++i) {
-    const DepthAndNormal files = ToColmapMaps(map, kCamera);
-    map.planes = Planes(files);
+    map.planes = Planes(map);
   }
   for (size_t i = 0; i < map.planes.size(); ++i) {
     EXPECT_NEAR(map.planes[i].distance / first.planes[i].distance, 1, 5e-6);
@@ -112,7 +145,7 @@ TEST_F(RayConvention, RoundTripsDoNotDrift) {
 // sparse model's K: the point must lie on the plane that was estimated.
 TEST_F(RayConvention, FusionsPointsLieOnThePlane) {
   const HypothesisMap map = RandomPlanes();
-  const DepthAndNormal files = ToColmapMaps(map, kCamera);
+  const DepthAndNormal files = WrittenMaps(map, kCamera);
   const Camera fusion = SparseModelCamera();
   for (int row = 0; row < kHeight; ++row) {
     for (int col = 0; col < kWidth; ++col) {
@@ -132,7 +165,7 @@ TEST_F(RayConvention, FusedWallIsTheTrueWall) {
   HypothesisMap map(kWidth, kHeight);
   const Plane wall = PlaneFromDepth(kCamera, 10, 10, 5, normal);
   for (Plane& plane : map.planes) plane = wall;
-  const Map depth = ToColmapMaps(map, kCamera).depth;
+  const Map depth = WrittenMaps(map, kCamera).depth;
   const Camera fusion = SparseModelCamera();
   // In the world frame: n_w . X + d_w = 0.
   const Vec3f n_world = Transposed(kCamera.R) * normal;
@@ -150,7 +183,7 @@ TEST_F(RayConvention, FusedWallIsTheTrueWall) {
 
 TEST_F(RayConvention, NormalsAreStoredPlaneByPlane) {
   const HypothesisMap map = RandomPlanes();
-  const DepthAndNormal files = ToColmapMaps(map, kCamera);
+  const DepthAndNormal files = WrittenMaps(map, kCamera);
   ASSERT_EQ(files.depth.channels, 1);
   ASSERT_EQ(files.normal.channels, 3);
   const size_t size = map.planes.size();
@@ -161,7 +194,8 @@ TEST_F(RayConvention, NormalsAreStoredPlaneByPlane) {
 }
 
 // Also in the partial blocks at the right and lower border.
-TEST_F(RayConvention, HalvedInverseDepthsArePlanesAtTheCentresOfTheCoarsePixels) {
+TEST_F(RayConvention,
+       HalvedInverseDepthsArePlanesAtTheCentresOfTheCoarsePixels) {
   HypothesisMap map(kWidth, kHeight);
   const Plane wall =
       PlaneFromDepth(kCamera, 10, 10, 5, Normalized({0.3f, -0.2f, -1}));
@@ -202,8 +236,8 @@ TEST_F(RayConvention, PixelsNotKeptOrWithoutAPlaneAreZero) {
   map.planes[5] = {{0, 0, 0}, 0};
   std::vector<bool> keep(map.planes.size(), true);
   keep[7] = false;
-  const DepthAndNormal files = ToColmapMaps(map, kCamera, &keep);
-  const std::vector<Plane> back = Planes(files);
+  const DepthAndNormal files = WrittenMaps(map, kCamera, &keep);
+  const std::vector<Plane> back = Planes(map, &keep);
   const size_t size = map.planes.size();
   for (const size_t i : {size_t{5}, size_t{7}}) {
     EXPECT_EQ(files.depth.data[i], 0);
@@ -224,7 +258,7 @@ TEST_F(RayConvention, PlaneThatMissesColmapsRayBecomesZero) {
   Vec3f edge_on = Normalized(Cross(Cross(ray, other), other));
   if (Dot(edge_on, ray) > 0) edge_on = -edge_on;
   map.planes[10 * kWidth + 20] = PlaneFromDepth(kCamera, 20, 10, 5, edge_on);
-  const DepthAndNormal files = ToColmapMaps(map, kCamera);
+  const DepthAndNormal files = WrittenMaps(map, kCamera);
   EXPECT_EQ(files.depth.data[10 * kWidth + 20], 0);
   EXPECT_EQ(files.normal.data[10 * kWidth + 20], 0);
 }
@@ -234,7 +268,7 @@ TEST_F(RayConvention, NonFinitePlanesBecomeZero) {
   map.planes[3] = {{NAN, 0, -1}, 1};
   map.planes[4] = {{0, 0, -1}, INFINITY};
   map.planes[5] = {{0, 0, -1}, NAN};
-  const DepthAndNormal files = ToColmapMaps(map, kCamera);
+  const DepthAndNormal files = WrittenMaps(map, kCamera);
   for (const int i : {3, 4, 5}) EXPECT_EQ(files.depth.data[i], 0);
 }
 

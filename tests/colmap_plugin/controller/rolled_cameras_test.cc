@@ -2,8 +2,8 @@
 // fuses, while K of the sparse model has the centres at +0.5. Between cameras
 // of one orientation the half pixel cancels nearly; between rolled ones it does
 // not. Matching with true centres and writing for fusion's rays must.
-#include "colmap_plugin/controller/ray_convention.h"
 #include "src/cpu/cpu_backend.h"
+#include "tests/colmap_plugin/controller/written_maps.h"
 #include "tests/engine/estimate.h"
 
 #include <algorithm>
@@ -81,7 +81,7 @@ TEST_F(RolledCameras, FusedPointsAreMuchNearerThanWithTheIntegerRule) {
   const std::vector<HypothesisMap> maps = Estimate(views_);
   std::vector<Map> ours;
   for (int i = 0; i < kNumRefs; ++i) {
-    ours.push_back(ToColmapMaps(maps[i], views_[i].camera).depth);
+    ours.push_back(WrittenMaps(maps[i], views_[i].camera).depth);
   }
 
   std::vector<RenderedView> integer_views = views_;
