@@ -72,8 +72,10 @@ class MadeUpCardTest : public testing::Test {
       map.priors[i].distance = 0;
     run(PassKind::kPrior, StartFrom::kPrior, true);
     map.priors = {};
-    for (size_t i = 0; i < map.planes.size(); i += 5)
-      map.planes[i].distance = 0;
+    for (size_t i = 0; i < map.planes.size(); ++i) {
+      if (i % 5 == 0) map.planes[i].distance = 0;
+      if (i % 4 == 0) map.costs[i] = 0.5f;
+    }
     run(PassKind::kBasic, StartFrom::kMissing, false);
     run(PassKind::kGeometric, StartFrom::kCurrent, true);
     for (size_t i = 0; i < map.planes.size(); i += 3) {
