@@ -18,7 +18,7 @@ constexpr float kColmapShift = -0.5f;
 // do_band(first_row, num_rows), by several threads.
 template <class DoBand>
 void ForEachBand(int width, int height, const DoBand& do_band) {
-  constexpr int kBandPixels = 1 << 14;
+  constexpr int kBandPixels = 1 << 15;
   const int band_rows = std::clamp(kBandPixels / width, 1, height);
   tbb::parallel_for(0, (height + band_rows - 1) / band_rows, [&](int band) {
     const int begin = band * band_rows;

@@ -12,9 +12,9 @@ namespace hpm {
 
 // Largest need over all problems, in bytes.
 struct MemoryNeeds {
-  uint64_t working = 0;   // per image in flight: of the backend, the maps being
-                          // written, and the decoder of one file
-  uint64_t inputs = 0;    // images and depth maps of one problem
+  uint64_t working = 0;  // per image in flight: of the backend, maps read back,
+                         // and the decoder of one file
+  uint64_t inputs = 0;   // images and depth maps of one problem
   uint64_t decoding = 0;  // of `working`: the decoder
 };
 

@@ -4,7 +4,6 @@
 
 #include "src/core/pixel_state.h"
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -32,8 +31,8 @@ struct HypothesisMap {
   HypothesisMap() = default;
   HypothesisMap(int w, int h) { Reset(w, h); }
 
-  // As new, but in the memory it has: fresh memory is slow to come by. The
-  // planes of a map of the same size stay for the caller to replace.
+  // As new, but in the memory it has: fresh memory is slow to come by. Planes
+  // that were there stay for the caller to replace.
   void ResetAllButPlanes(int w, int h) {
     width = w;
     height = h;
@@ -46,8 +45,8 @@ struct HypothesisMap {
     prior_level = 0;
   }
   void Reset(int w, int h) {
+    planes.clear();
     ResetAllButPlanes(w, h);
-    std::fill(planes.begin(), planes.end(), Plane{{0, 0, 0}, 0});
   }
 
   PixelState View() {

@@ -48,21 +48,21 @@ InverseDepthMap InverseDepthMap::Of(const float* values, size_t count) {
   if (!(top > 0)) return map;
   map.step = static_cast<float>(top / kNumSteps);
   const double step = map.step;
-  tbb::parallel_for(
-      tbb::blocked_range<size_t>(0, count, kGrain), [&](const auto& range) {
-        for (size_t i = range.begin(); i < range.end(); ++i) {
-          if (!(values[i] > 0)) continue;
-          // Not below one step, which would read as "no depth". To the nearest
-          // step, which is what cutting off after adding a half gives from one
-          // on.
-          const auto steps = static_cast<uint32_t>(
-              std::clamp(values[i] / step, 1.0, kNumSteps) + 0.5);
-          uint8_t* bytes = &map.steps[kInverseDepthBytes * i];
-          bytes[0] = static_cast<uint8_t>(steps);
-          bytes[1] = static_cast<uint8_t>(steps >> 8);
-          bytes[2] = static_cast<uint8_t>(steps >> 16);
-        }
-      });
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, count, kGrain),
+                    [&](const auto& range) {
+                      for (size_t i = range.begin(); i < range.end(); ++i) {
+                        if (!(values[i] > 0)) continue;
+                        // Not below one step, which would read as "no depth".
+                        // To the nearest step, which is what cutting off after
+                        // adding a half gives from one on.
+                        const auto steps = static_cast<uint32_t>(
+                            std::clamp(values[i] / step, 1.0, kNumSteps) + 0.5);
+                        uint8_t* bytes = &map.steps[kInverseDepthBytes * i];
+                        bytes[0] = static_cast<uint8_t>(steps);
+                        bytes[1] = static_cast<uint8_t>(steps >> 8);
+                        bytes[2] = static_cast<uint8_t>(steps >> 16);
+                      }
+                    });
   return map;
 }
 

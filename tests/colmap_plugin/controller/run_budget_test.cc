@@ -64,7 +64,7 @@ TEST(DecodesAtOnceTest, FitIntoWhatMatchingTakes) {
   MemoryNeeds needs;
   needs.working = 900;
   needs.decoding = 100;
-  EXPECT_EQ(DecodesAtOnce(needs), 3);
+  EXPECT_EQ(DecodesAtOnce(needs), 2);
   needs.decoding = 800;
   EXPECT_EQ(DecodesAtOnce(needs), 1);
   needs.decoding = 1;
