@@ -47,10 +47,37 @@ double Residual(const ImagePlane& plane, const ReliablePoint& p) {
 }
 
 int CountSupport(const ImagePlane& plane,
-                 const std::vector<ReliablePoint>& points,
+                 const ReliablePoint* begin,
+                 const ReliablePoint* end,
                  double tolerance) {
   int count = 0;
-  for (const ReliablePoint& p : points) count += Residual(plane, p) < tolerance;
+  for (const ReliablePoint* p = begin; p != end; ++p)
+    count += Residual(plane, *p) < tolerance;
+  return count;
+}
+
+int CountSupport(const ImagePlane& plane,
+                 const std::vector<ReliablePoint>& points,
+                 double tolerance) {
+  return CountSupport(
+      plane, points.data(), points.data() + points.size(), tolerance);
+}
+
+// The same, but gives up, with any number up to `at_least`, where there cannot
+// be more.
+int CountSupportAbove(const ImagePlane& plane,
+                      const std::vector<ReliablePoint>& points,
+                      double tolerance,
+                      int at_least) {
+  constexpr ptrdiff_t kBlock = 64;
+  const ReliablePoint* end = points.data() + points.size();
+  int count = 0;
+  for (const ReliablePoint* p = points.data();
+       p != end && count + (end - p) > at_least;) {
+    const ReliablePoint* behind = p + std::min(kBlock, end - p);
+    count += CountSupport(plane, p, behind, tolerance);
+    p = behind;
+  }
   return count;
 }
 
@@ -99,7 +126,7 @@ ImagePlane BestPlane(const std::vector<ReliablePoint>& points,
     const ReliablePoint& c = draw();
     ImagePlane plane;
     if (!PlaneThrough(a, b, c, &plane)) continue;
-    const int count = CountSupport(plane, points, tolerance);
+    const int count = CountSupportAbove(plane, points, tolerance, best_count);
     if (count > best_count) {
       best_count = count;
       best = plane;
