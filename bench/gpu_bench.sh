@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# On a machine with a card: the GPU tests and compute-sanitizer, the kernels by variant, the
-# profiler's counters, whole runs against the CPU, most important first. Writes logs and
+# On a machine with a card: the GPU tests and compute-sanitizer, the kernels by variant, whole
+# runs against the CPU, large images, the profiler's counters, most important first. Writes logs and
 # JSON to OUT_DIR after each step; needs build/gpu_carry.tar.xz (bench/gpu_carry.sh), no compiler.
 #
 #   bench/gpu_bench.sh [OUT_DIR]             # default build/gpu_out
-#   STEPS="test kernels" bench/gpu_bench.sh  # some of: test kernels profile runs large
+#   STEPS="test kernels" bench/gpu_bench.sh  # some of: test kernels runs large profile
 #   BENCH_ARGS, RUNS_ARGS: for hpm_gpu_bench and bench/gpu/runs.py
 #
 # Each step has a time limit of its own. A step that fails is reported and the next one
@@ -12,7 +12,7 @@
 set -uo pipefail
 cd "$(dirname "$0")/.."
 out=${1:-build/gpu_out}
-steps=${STEPS:-test kernels profile runs large}
+steps=${STEPS:-test kernels runs large profile}
 carry=$PWD/build/gpu_carry
 bin=$carry/bin
 export LD_LIBRARY_PATH=$carry/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
@@ -57,7 +57,7 @@ step_kernels() {
   return $status
 }
 
-step_runs() { timeout 170 python3 -u bench/gpu/runs.py --carry "$carry" --out "$out/runs.json" ${RUNS_ARGS:-}; }
+step_runs() { timeout 130 python3 -u bench/gpu/runs.py --carry "$carry" --out "$out/runs.json" ${RUNS_ARGS:-}; }
 
 # The update and the start of a basic pass, once each, after the warm-up.
 step_profile() {

@@ -23,10 +23,10 @@ CUDA = ["--Hpm.device", "cuda"]
 # name: arguments; in order of what one wants to know first.
 RUNS = {
     "cuda hpm_plus": CUDA,
-    "cuda hpm_plus, 1 in flight": [*CUDA, "--Hpm.gpu_images", "1"],
     "cuda hpm": [*CUDA, "--Hpm.method", "hpm"],
     "cuda hpm_fast": [*CUDA, "--Hpm.method", "hpm_fast"],
     "cuda hpm_plus, low": [*CUDA, "--Hpm.quality", "low"],
+    "cuda hpm_plus, 1 in flight": [*CUDA, "--Hpm.gpu_images", "1"],
 }
 CPU_RUN = {"cpu hpm_plus, 2 threads": ["--Hpm.device", "cpu", "--PatchMatchStereo.num_threads", "2"]}
 
