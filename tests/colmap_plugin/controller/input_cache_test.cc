@@ -167,8 +167,12 @@ TEST_F(InputCacheTest, TheFirstUnreadableImageIsNamed) {
   for (const int image : {1, 2})
     std::filesystem::resize_file(workspace_.ImagePath(image), 60);
   InputCache cache = MakeCache(kPlenty);
+  // A second thread begins in the middle.
+  std::vector<ImageRequest> requests(16);
+  requests[7].image = 2;
+  requests[8].image = 1;
   try {
-    cache.Images({{0, 0}, {2, 0}, {1, 0}});
+    cache.Images(requests);
     ADD_FAILURE();
   } catch (const UnreadableImage& error) {
     EXPECT_EQ(error.image(), 2);
