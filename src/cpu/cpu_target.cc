@@ -1,11 +1,11 @@
 #include "src/cpu/cpu_target.h"
 
 #include "src/base/error.h"
+#include "src/base/simd_targets.h"
 #include "src/cpu/geometric_error_scalar.h"
 #include "src/cpu/geometric_error_simd.h"
 #include "src/cpu/match_cost_scalar.h"
 #include "src/cpu/match_cost_simd.h"
-#include "src/base/simd_targets.h"
 
 #include <algorithm>
 #include <cctype>
