@@ -17,15 +17,11 @@ class LaneCost : public PixelCost {
                          int row)
       : PixelCost(problem, col, row), window_(window) {}
 
-#if defined(HPM_NO_INLINE) && defined(__CUDACC__)
-  __noinline__
-#endif
-      HPM_HD_MEMBER void
-      Photometric(const Plane* planes,
-                  int num_planes,
-                  const uint8_t* views,
-                  int num_views,
-                  float* costs) const {
+  HPM_HD_MEMBER void Photometric(const Plane* planes,
+                                 int num_planes,
+                                 const uint8_t* views,
+                                 int num_views,
+                                 float* costs) const {
     // One loop over all pairs: lanes of a warp differ in both numbers, and two
     // loops would each wait for the longest.
     const Sampler sampler(problem_);

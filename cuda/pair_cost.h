@@ -4,6 +4,7 @@
 #pragma once
 
 #include "cuda/samplers.h"
+#include "cuda/tuning.h"
 
 namespace hpm {
 
@@ -26,11 +27,6 @@ HPM_HD void StoreWindow(const RefPatch& patch,
     samples[k * stride] = {patch.weight[k], patch.weighted[k]};
   }
 }
-
-#if !defined(HPM_ROWS)
-#define HPM_ROWS 3
-#endif
-constexpr int kRowsUnrolled = HPM_ROWS;
 
 template <class Sampler>
 HPM_HD float PairCost(const PatchShape& shape,
@@ -57,7 +53,7 @@ HPM_HD float PairCost(const PatchShape& shape,
   if (!IsVisible(warp, shape, view.width, view.height)) return kMaxCost;
   float sum_s = 0, sum_ss = 0, sum_rs = 0;
 #if defined(__CUDA_ARCH__)
-#pragma unroll kRowsUnrolled
+#pragma unroll kRowsAtOnce
 #endif
   for (int j = 0; j < kPatchAxis; ++j) {
     const Vec3f line =

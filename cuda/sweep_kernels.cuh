@@ -7,18 +7,9 @@
 #include "cuda/lane_cost.h"
 #include "cuda/launch.h"
 #include "cuda/pixel_kernels.h"
+#include "cuda/tuning.h"
 
 namespace hpm {
-
-#if !defined(HPM_WARPS_PER_BLOCK)
-#define HPM_WARPS_PER_BLOCK 2
-#endif
-constexpr int kWarpsPerBlock = HPM_WARPS_PER_BLOCK;
-// At most 128 registers per thread. The benchmark compares other numbers.
-#if !defined(HPM_BLOCKS_PER_PROCESSOR)
-#define HPM_BLOCKS_PER_PROCESSOR 8
-#endif
-constexpr int kBlocksPerProcessor = HPM_BLOCKS_PER_PROCESSOR;
 
 // The windows of the pixels of a warp.
 struct WarpWindows {

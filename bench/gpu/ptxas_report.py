@@ -45,7 +45,7 @@ def parse(text):
 def report(nvcc, arch, source):
     with tempfile.TemporaryDirectory() as folder:
         result = subprocess.run(
-            [nvcc, "-std=c++17", "-O3", "-gencode", f"arch=compute_{arch},code=sm_{arch}",
+            [nvcc, "-std=c++17", "-O3", "-ftz=true", "-prec-div=false", "-prec-sqrt=false", "-gencode", f"arch=compute_{arch},code=sm_{arch}",
              "-Xptxas", "-v", f"-I{ROOT}", "-c", ROOT / source, "-o", f"{folder}/out.o"],
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=True,
         )
