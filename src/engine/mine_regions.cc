@@ -71,6 +71,39 @@ int CountAgreeing(const std::vector<Witness>& witnesses,
   return count;
 }
 
+// How many witnesses have the median pixel in their image; one at least. Those
+// that look at but a part of the image, zoomed in or turned away, cannot agree
+// on the rest.
+int NumSeeingMost(const std::vector<Witness>& witnesses,
+                  const Camera& ref,
+                  const HypothesisMap& map,
+                  int step) {
+  std::vector<ptrdiff_t> counts;
+  for (int row = 0; row < map.height; row += step) {
+    for (int col = 0; col < map.width; col += step) {
+      const Plane& plane =
+          map.planes[static_cast<size_t>(row) * map.width + col];
+      if (!(plane.distance > 0)) continue;
+      const PlaneSlope slope = SlopeOf(ref, plane);
+      float u, v;
+      counts.push_back(std::count_if(
+          witnesses.begin(), witnesses.end(), [&](const Witness& witness) {
+            return IsSeen(witness.view.to_src,
+                          slope,
+                          static_cast<float>(col),
+                          static_cast<float>(row),
+                          &u,
+                          &v);
+          }));
+    }
+  }
+  if (counts.empty()) return 1;
+  const auto middle =
+      counts.begin() + static_cast<ptrdiff_t>(counts.size() / 2);
+  std::nth_element(counts.begin(), middle, counts.end());
+  return std::max(1, static_cast<int>(*middle));
+}
+
 struct Pixel {
   int col, row;
 };
@@ -200,9 +233,10 @@ MinedRegions MineRegions(const ViewSet& views,
   const WeakRegions regions = FindWeakRegions(
       *views.ref.image, params.region_max_gradient, params.region_min_share);
   if (regions.num_regions == 0) return {};
-  const int needed = std::min(params.region_min_consistent,
-                              static_cast<int>(witnesses.size()));
   const int step = LatticeStep(map);
+  const int needed =
+      std::min(params.region_min_consistent,
+               NumSeeingMost(witnesses, views.ref.camera, map, step));
   const auto reliable = [&](const std::vector<Pixel>& pixels) {
     return ReliablePoints(witnesses,
                           views.ref.camera,
