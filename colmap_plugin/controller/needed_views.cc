@@ -1,5 +1,7 @@
 #include "colmap_plugin/controller/needed_views.h"
 
+#include "src/engine/source_geometry.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -16,7 +18,7 @@ NeededViews::NeededViews(const ViewSet& views,
       geometric_(geometric) {
   for (const View& src : views.srcs) {
     warps_.push_back(MakeViewWarp(views.ref.camera, src.camera));
-    centers_.push_back(CamFromWorld(views.ref.camera, Center(src.camera)));
+    centers_.push_back(CenterOf(views.ref.camera, src));
   }
 }
 

@@ -1,6 +1,7 @@
 #include "src/engine/mine_regions.h"
 
 #include "src/base/large_vectors.h"
+#include "src/engine/source_geometry.h"
 #include "src/engine/visit_params.h"
 #include "src/prior/region_planes.h"
 
@@ -33,10 +34,7 @@ std::vector<Witness> WitnessesOf(const ViewSet& views) {
   std::vector<Witness> witnesses;
   for (const View& src : views.srcs) {
     if (src.inverse_depth == nullptr) continue;
-    witnesses.push_back({{MakeViewWarp(ref, src.camera),
-                          MakeViewWarp(src.camera, ref),
-                          src.inverse_depth->View()},
-                         CamFromWorld(ref, Center(src.camera))});
+    witnesses.push_back({DepthViewOf(ref, src), CenterOf(ref, src)});
   }
   return witnesses;
 }
