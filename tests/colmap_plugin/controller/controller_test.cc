@@ -390,7 +390,7 @@ TEST_F(ControllerTest, NoInnerMapsAreLeftOfAnyRun) {
 TEST_F(ControllerTest, StampsGoBeforeTheirMapsAreReplaced) {
   Run();
   const std::filesystem::path state = scene_.path() / "stereo/hpm_mvs";
-  ASSERT_TRUE(ReadStampFingerprint(state, ViewName(0), "photometric"));
+  ASSERT_TRUE(ReadStamp(state, ViewName(0), "photometric"));
   // A folder in its place: the depth map cannot be published.
   const std::filesystem::path depth = MapPath("depth_maps", 0, "photometric");
   std::filesystem::remove(depth);
@@ -400,7 +400,7 @@ TEST_F(ControllerTest, StampsGoBeforeTheirMapsAreReplaced) {
     Run();
   } catch (const Error&) {
   }
-  EXPECT_FALSE(ReadStampFingerprint(state, ViewName(0), "photometric"));
+  EXPECT_FALSE(ReadStamp(state, ViewName(0), "photometric"));
 }
 
 TEST_F(ControllerTest, ResultsWithoutAFailedSourceAreMadeAgain) {
