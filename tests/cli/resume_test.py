@@ -108,8 +108,10 @@ class Images(ResumeTest):
         self.assert_exit(self.run_tool(straight, *slow), 0)
         workspace, _ = self.scene()
         path = workspace / "images" / NAMES[0]
+        # Never half written, which would be another fault.
+        (workspace / "other").write_bytes(versions[NAMES[0]]["other"])
         process = self.start_tool(workspace, *slow)
-        write_in_place(path, versions[NAMES[0]]["other"])
+        os.replace(workspace / "other", path)
         self.assertEqual(process.wait(60), 0)
         log = (workspace / "log.txt").read_text()
         self.assertIn("1 of 4 images changed during this run", log)
@@ -260,12 +262,13 @@ class Histories(ResumeTest):
 
     def swap_two_maps(self):
         maps = self.some_maps()
+        if len(maps) < 2:
+            return
         a, b = maps[0], maps[-1]
         # With their times, as a renaming does.
         spare = self.dense / "spare"
         os.replace(a, spare)
-        if b != a:
-            os.replace(b, a)
+        os.replace(b, a)
         os.replace(spare, b)
 
     def copy_maps_away(self):
@@ -337,9 +340,8 @@ class Histories(ResumeTest):
             history = []
             for _ in range(self.random.randint(1, 6)):
                 step = self.random.choice(steps)
-                if (self.dense / "stereo").rglob("*.bin"):
-                    step()
-                    history.append(step.__name__)
+                step()
+                history.append(step.__name__)
             code, maps = self.expected()
             result = self.run_tool(self.dense, *OPTIONS)
             place = f"round {round_number} after {history} with {self.images}"
