@@ -2,7 +2,7 @@
 // watchdog ends launches of seconds, and a cancelled run should stop soon.
 #pragma once
 
-#include "cuda/pixel_kernels.h"
+#include "src/core/sweep.h"
 
 #include <array>
 

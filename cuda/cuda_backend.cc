@@ -5,9 +5,9 @@
 #include "cuda/device_memory.h"
 #include "cuda/launch.h"
 #include "cuda/problem_tables.h"
-#include "cuda/sweeps.h"
 #include "src/base/error.h"
 #include "src/engine/phase_timer.h"
+#include "src/engine/sweeps.h"
 
 #include <algorithm>
 #include <array>

@@ -3,6 +3,7 @@
 #include "cuda/check.h"
 #include "cuda/launch.h"
 #include "cuda/texel_image.h"
+#include "cuda/upsampled_prior.h"
 
 namespace hpm {
 namespace {
@@ -18,19 +19,12 @@ __device__ Pixel PixelOfThread(const Band& band) {
       band, thread / kWarpSize, static_cast<int>(thread % kWarpSize));
 }
 
-__global__ void FollowKernel(const VisitParams params,
-                             const PixelState state,
-                             const Band band) {
+__global__ void PlainSweepKernel(const VisitParams params,
+                                 const Sweep sweep,
+                                 const PixelState state,
+                                 const Band band) {
   const Pixel pixel = PixelOfThread(band);
-  if (pixel.inside) TakeNeighbour(params, state, pixel.col, pixel.row);
-}
-
-__global__ void MedianKernel(const Camera camera,
-                             const PixelState state,
-                             const Band band) {
-  const Pixel pixel = PixelOfThread(band);
-  if (!pixel.inside) return;
-  MedianFilterPixel(camera, state, pixel.col, pixel.row);
+  if (pixel.inside) VisitPixel(params, sweep, state, pixel.col, pixel.row);
 }
 
 __global__ void Upsample(const __grid_constant__ DeviceProblem problem,
@@ -79,21 +73,13 @@ unsigned Blocks(size_t threads) {
 
 }  // namespace
 
-void LaunchFollow(const SweepLaunch& launch, cudaStream_t stream) {
-  FollowKernel<<<Blocks(launch.band.num_warps() * kWarpSize),
-                 kBlock,
-                 0,
-                 stream>>>(launch.problem->params, launch.state, launch.band);
-  CheckCuda(cudaGetLastError(), "starting the followers");
-}
-
-void LaunchMedian(const SweepLaunch& launch, cudaStream_t stream) {
-  MedianKernel<<<Blocks(launch.band.num_warps() * kWarpSize),
-                 kBlock,
-                 0,
-                 stream>>>(
-      launch.problem->params.ref, launch.state, launch.band);
-  CheckCuda(cudaGetLastError(), "starting the median");
+void LaunchPlainSweep(const SweepLaunch& launch, cudaStream_t stream) {
+  PlainSweepKernel<<<Blocks(launch.band.num_warps() * kWarpSize),
+                     kBlock,
+                     0,
+                     stream>>>(
+      launch.problem->params, launch.sweep, launch.state, launch.band);
+  CheckCuda(cudaGetLastError(), "starting a kernel");
 }
 
 void LaunchUpsample(const DeviceProblem& problem,

@@ -2,9 +2,10 @@
 // return at once and throw GpuError(kDevice) if the launch is refused.
 #pragma once
 
-#include "cuda/pixel_kernels.h"
+#include "cuda/device_problem.h"
 #include "cuda/pixel_tiles.h"
 #include "cuda/samplers.h"
+#include "src/core/sweep.h"
 
 #include <cuda_runtime_api.h>
 
@@ -21,8 +22,8 @@ struct SweepLaunch {
 
 void LaunchTextureSweep(const SweepLaunch& launch, cudaStream_t stream);
 void LaunchQuadSweep(const SweepLaunch& launch, cudaStream_t stream);
-void LaunchFollow(const SweepLaunch& launch, cudaStream_t stream);
-void LaunchMedian(const SweepLaunch& launch, cudaStream_t stream);
+// Those that need no matching cost.
+void LaunchPlainSweep(const SweepLaunch& launch, cudaStream_t stream);
 
 // costs[i]: of planes[i], from all views; both in the card's memory.
 struct ScoreLaunch {

@@ -1,5 +1,6 @@
 #include "cuda/problem_tables.h"
 
+#include "src/engine/source_geometry.h"
 #include "src/engine/visit_params.h"
 
 namespace hpm {
@@ -10,20 +11,15 @@ ProblemTables MakeProblemTables(const ViewSet& views,
   tables.visit = MakeVisitParams(views, params);
   tables.method = params;
   tables.problem.params = tables.visit;
-  tables.problem.shape = MakePatchShape(params.patch_radius,
-                                        params.sigma_spatial,
-                                        params.sigma_color,
-                                        params.cut_color);
+  tables.problem.shape = ShapeOf(params);
   for (int i = 0; i < 256; ++i) {
     tables.color_weights.push_back(
         ColorWeight(tables.problem.shape, static_cast<float>(i)));
   }
   for (const View& src : views.srcs) {
-    const ViewWarp warp = MakeViewWarp(views.ref.camera, src.camera);
-    tables.depth_views.push_back(
-        {warp, MakeViewWarp(src.camera, views.ref.camera), {nullptr, 0}});
-    tables.src_centers.push_back(
-        CamFromWorld(views.ref.camera, Center(src.camera)));
+    tables.depth_views.push_back(DepthViewOf(views.ref.camera, src));
+    tables.src_centers.push_back(CenterOf(views.ref.camera, src));
+    const ViewWarp& warp = tables.depth_views.back().to_src;
     ViewGeometry geometry = {};
     for (int i = 0; i < 9; ++i) geometry.M[i] = warp.M.m[i];
     geometry.v[0] = warp.v.x;

@@ -6,7 +6,6 @@
 #include "cuda/check.h"
 #include "cuda/lane_cost.h"
 #include "cuda/launch.h"
-#include "cuda/pixel_kernels.h"
 #include "cuda/tuning.h"
 
 namespace hpm {
@@ -58,8 +57,15 @@ __global__ void __launch_bounds__(kWarpsPerBlock* kWarpSize,
     const Window window = WindowAt(
         problem, &windows[threadIdx.x / kWarpSize], pixel.col, pixel.row);
     const LaneCost<Sampler> cost(problem, window, pixel.col, pixel.row);
-    VisitPixel<kKind>(
-        problem, sweep, state, consistent, cost, pixel.col, pixel.row);
+    VisitPixel<kKind>(problem.params,
+                      problem.pattern,
+                      problem.src_centers,
+                      sweep,
+                      state,
+                      consistent,
+                      cost,
+                      pixel.col,
+                      pixel.row);
     evaluations = cost.num_evaluations();
   }
   __syncwarp();
@@ -107,10 +113,8 @@ void LaunchSweepWith(const SweepLaunch& launch, cudaStream_t stream) {
       start(&SweepKernel<SweepKind::kConsistency, Sampler>);
       break;
     case SweepKind::kFollow:
-      LaunchFollow(launch, stream);
-      break;
     case SweepKind::kMedian:
-      LaunchMedian(launch, stream);
+      LaunchPlainSweep(launch, stream);
       break;
   }
 }

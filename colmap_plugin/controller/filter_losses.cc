@@ -1,5 +1,7 @@
 #include "colmap_plugin/controller/filter_losses.h"
 
+#include "src/engine/source_geometry.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -18,12 +20,8 @@ class Judge {
         max_error_(filter.max_reprojection_error),
         geometric_(geometric) {
     for (const View& src : views.srcs) {
-      centers_.push_back(CamFromWorld(ref_, Center(src.camera)));
-      depth_views_.push_back({MakeViewWarp(ref_, src.camera),
-                              MakeViewWarp(src.camera, ref_),
-                              src.inverse_depth != nullptr
-                                  ? src.inverse_depth->View()
-                                  : InverseDepths{nullptr, 0}});
+      centers_.push_back(CenterOf(ref_, src));
+      depth_views_.push_back(DepthViewOf(ref_, src));
     }
   }
 

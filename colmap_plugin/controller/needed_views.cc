@@ -1,5 +1,7 @@
 #include "colmap_plugin/controller/needed_views.h"
 
+#include "src/engine/source_geometry.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -16,7 +18,7 @@ NeededViews::NeededViews(const ViewSet& views,
       geometric_(geometric) {
   for (const View& src : views.srcs) {
     warps_.push_back(MakeViewWarp(views.ref.camera, src.camera));
-    centers_.push_back(CamFromWorld(views.ref.camera, Center(src.camera)));
+    centers_.push_back(CenterOf(views.ref.camera, src));
   }
 }
 
@@ -38,11 +40,8 @@ int NeededViews::CountSeeing(size_t at) const {
     if (geometric_ && views_.srcs[j].inverse_depth == nullptr) continue;
     if (SightOf(point, plane.normal, centers_[j], max_cos_) != Sight::kFront)
       continue;
-    const Vec3f q = WarpPatch(warps_[j], slope, x, y).origin;
-    const float u = q.x / q.z, v = q.y / q.z;
-    count += q.z > 0 && u >= -0.5f && v >= -0.5f &&
-             u <= static_cast<float>(warps_[j].width) - 0.5f &&
-             v <= static_cast<float>(warps_[j].height) - 0.5f;
+    float u, v;
+    count += IsSeen(warps_[j], slope, x, y, &u, &v);
   }
   return count;
 }

@@ -22,6 +22,25 @@ struct Reprojection {
   float inverse_depth;  // 1/z in the reference camera; 0: there is none
 };
 
+// Whether the hypothesis lies inside the source image; where, in its pixels.
+HPM_HD bool IsSeen(const ViewWarp& to_src,
+                   const PlaneSlope& slope,
+                   float col,
+                   float row,
+                   float* u,
+                   float* v) {
+  const Vec3f q =
+      to_src.M * Vec3f{col, row, 1.0f} -
+      (slope.col * col + slope.row * row + slope.constant) * to_src.v;
+  if (!(q.z > 0)) return false;
+  const float inv_q = 1 / q.z;
+  *u = q.x * inv_q;
+  *v = q.y * inv_q;
+  return *u >= -0.5f && *v >= -0.5f &&
+         *u <= static_cast<float>(to_src.width) - 0.5f &&
+         *v <= static_cast<float>(to_src.height) - 0.5f;
+}
+
 // Goes to the source view along the hypothesis and back along the depth that
 // the source view found. `inverse_depth(u, v)` returns 1/z of the source view
 // at a continuous position (pixel centres at integers), 0 where there is none.
@@ -35,18 +54,8 @@ HPM_HD Reprojection Reproject(const ViewWarp& to_src,
                               float row,
                               const InverseDepth& inverse_depth) {
   const Reprojection none = {0, 0, 0};
-  const Vec3f q =
-      to_src.M * Vec3f{col, row, 1.0f} -
-      (slope.col * col + slope.row * row + slope.constant) * to_src.v;
-  if (!(q.z > 0)) return none;
-  const float inv_q = 1 / q.z;
-  const float u = q.x * inv_q;
-  const float v = q.y * inv_q;
-  if (!(u >= -0.5f && v >= -0.5f &&
-        u <= static_cast<float>(to_src.width) - 0.5f &&
-        v <= static_cast<float>(to_src.height) - 0.5f)) {
-    return none;
-  }
+  float u, v;
+  if (!IsSeen(to_src, slope, col, row, &u, &v)) return none;
   const float inv_z = inverse_depth(u, v);
   if (!(inv_z > 0)) return none;
   const Vec3f p = to_ref.M * Vec3f{u, v, 1.0f} + inv_z * to_ref.v;

@@ -1,14 +1,12 @@
 #include "src/cpu/cpu_backend.h"
 
-#include "src/core/initialize_pixel.h"
-#include "src/core/median_filter.h"
-#include "src/core/take_neighbour.h"
-#include "src/core/update_pixel.h"
 #include "src/cpu/cpu_views.h"
+#include "src/engine/sweeps.h"
 #include "src/engine/visit_params.h"
 
 #include <atomic>
 #include <optional>
+#include <type_traits>
 
 #include <fmt/format.h>
 #include <tbb/blocked_range.h>
@@ -20,6 +18,9 @@ namespace {
 
 constexpr int kRowsPerTask = 4;
 constexpr size_t kPlanesPerTask = 64;
+
+template <SweepKind kKind>
+using Kind = std::integral_constant<SweepKind, kKind>;
 
 class CpuBackend : public Backend {
  public:
@@ -58,50 +59,12 @@ class CpuBackend : public Backend {
            const RunControl& control) override {
     const PixelState state = map->View();
     const VisitParams params = ForPass(visit_, method_, pass);
-    const uint64_t pass_key = CombineBits(random_key_, pass.id);
     const int num_steps = pass.NumSteps();
     int step = 0;
-    const auto finish_step = [&] {
-      if (control.progress)
+    for (const Sweep& sweep : SweepsOf(pass, random_key_)) {
+      RunSweep(params, pattern, sweep, state, control);
+      if (step < num_steps && control.progress)
         control.progress(static_cast<double>(++step) / num_steps);
-    };
-
-    const uint64_t start_key = CombineBits(pass_key, 0);
-    for (int color = 0; pass.start != StartFrom::kStored && color < 2;
-         ++color) {
-      HalfSweep(state, color, control, [&](int col, int row) {
-        const size_t at = static_cast<size_t>(row) * state.width + col;
-        if (!StartsAt(pass.start, state.planes[at])) return uint64_t{0};
-        const CpuPixelCost cost = CostAt(col, row);
-        Rng rng(start_key, col, row);
-        InitializePixel(params, state, pass.start, cost, &rng, col, row);
-        return cost.num_evaluations();
-      });
-      finish_step();
-    }
-    for (int iteration = 0; iteration < pass.num_iterations; ++iteration) {
-      const uint64_t key = CombineBits(pass_key, 1 + iteration);
-      for (int color = pass.first_color(); color < 2; ++color) {
-        HalfSweep(state, color, control, [&](int col, int row) {
-          const CpuPixelCost cost = CostAt(col, row);
-          Rng rng(key, col, row);
-          UpdatePixel(params, pattern, state, cost, &rng, iteration, col, row);
-          return cost.num_evaluations();
-        });
-        finish_step();
-      }
-    }
-    if (pass.half) {
-      HalfSweep(state, 0, control, [&](int col, int row) {
-        TakeNeighbour(params, state, col, row);
-        return uint64_t{0};
-      });
-    }
-    for (int color = 0; pass.median && color < 2; ++color) {
-      HalfSweep(state, color, control, [&](int col, int row) {
-        MedianFilterPixel(params.ref, state, col, row);
-        return uint64_t{0};
-      });
     }
   }
 
@@ -157,6 +120,33 @@ class CpuBackend : public Backend {
  private:
   CpuPixelCost CostAt(int col, int row) const {
     return {*views_, target_, visit_.geometric_term.max_error, col, row};
+  }
+
+  void RunSweep(const VisitParams& params,
+                const SamplingPattern& pattern,
+                const Sweep& sweep,
+                const PixelState& state,
+                const RunControl& control) {
+    const auto visit = [&](auto kind, int col, int row) {
+      const CpuPixelCost cost = CostAt(col, row);
+      VisitPixel<kind.value>(
+          params, pattern, nullptr, sweep, state, nullptr, cost, col, row);
+      return cost.num_evaluations();
+    };
+    HalfSweep(state, sweep.color, control, [&](int col, int row) {
+      switch (sweep.kind) {
+        case SweepKind::kInitialize: {
+          const size_t at = static_cast<size_t>(row) * state.width + col;
+          if (!StartsAt(sweep.start, state.planes[at])) break;
+          return visit(Kind<SweepKind::kInitialize>(), col, row);
+        }
+        case SweepKind::kUpdate:
+          return visit(Kind<SweepKind::kUpdate>(), col, row);
+        default:
+          VisitPixel(params, sweep, state, col, row);
+      }
+      return uint64_t{0};
+    });
   }
 
   // Calls visit(col, row) for all pixels of one colour; it returns the number

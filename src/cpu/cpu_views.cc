@@ -2,6 +2,8 @@
 
 #include "src/base/error.h"
 #include "src/cpu/texel_image.h"
+#include "src/engine/source_geometry.h"
+#include "src/engine/visit_params.h"
 
 #include <algorithm>
 #include <cmath>
@@ -34,10 +36,7 @@ CpuViews::CpuViews(const ViewSet& views, const MethodParams& params)
   }
 
   match_.ref = views.ref.camera;
-  match_.shape = MakePatchShape(params.patch_radius,
-                                params.sigma_spatial,
-                                params.sigma_color,
-                                params.cut_color);
+  match_.shape = ShapeOf(params);
   for (int i = 0; i < 256; ++i) {
     color_weights_[i] = ColorWeight(match_.shape, static_cast<float>(i));
   }
@@ -56,14 +55,10 @@ CpuViews::CpuViews(const ViewSet& views, const MethodParams& params)
   for (const View& src : views.srcs) {
     const int j = match_.num_views++;
     PackTexels(*src.image, texels_.data() + offset);
-    const ViewWarp warp = MakeViewWarp(views.ref.camera, src.camera);
-    depth_views_.push_back({warp,
-                            MakeViewWarp(src.camera, views.ref.camera),
-                            src.inverse_depth != nullptr
-                                ? src.inverse_depth->View()
-                                : InverseDepths{nullptr, 0}});
+    depth_views_.push_back(DepthViewOf(views.ref.camera, src));
     inverse_depths_.push_back(src.inverse_depth);
-    src_centers_.push_back(CamFromWorld(views.ref.camera, Center(src.camera)));
+    src_centers_.push_back(CenterOf(views.ref.camera, src));
+    const ViewWarp& warp = depth_views_.back().to_src;
     for (int i = 0; i < 9; ++i) match_.M[i][j] = warp.M.m[i];
     match_.v[0][j] = warp.v.x;
     match_.v[1][j] = warp.v.y;

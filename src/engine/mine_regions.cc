@@ -1,6 +1,7 @@
 #include "src/engine/mine_regions.h"
 
 #include "src/base/large_vectors.h"
+#include "src/engine/source_geometry.h"
 #include "src/engine/visit_params.h"
 #include "src/prior/region_planes.h"
 
@@ -33,10 +34,7 @@ std::vector<Witness> WitnessesOf(const ViewSet& views) {
   std::vector<Witness> witnesses;
   for (const View& src : views.srcs) {
     if (src.inverse_depth == nullptr) continue;
-    witnesses.push_back({{MakeViewWarp(ref, src.camera),
-                          MakeViewWarp(src.camera, ref),
-                          src.inverse_depth->View()},
-                         CamFromWorld(ref, Center(src.camera))});
+    witnesses.push_back({DepthViewOf(ref, src), CenterOf(ref, src)});
   }
   return witnesses;
 }
@@ -69,6 +67,39 @@ int CountAgreeing(const std::vector<Witness>& witnesses,
   }
   *inverse_depth = of_plane(col, row) + sum / static_cast<float>(count + 1);
   return count;
+}
+
+// How many witnesses have the median pixel in their image; one at least. Those
+// that look at but a part of the image, zoomed in or turned away, cannot agree
+// on the rest.
+int NumSeeingMost(const std::vector<Witness>& witnesses,
+                  const Camera& ref,
+                  const HypothesisMap& map,
+                  int step) {
+  std::vector<ptrdiff_t> counts;
+  for (int row = 0; row < map.height; row += step) {
+    for (int col = 0; col < map.width; col += step) {
+      const Plane& plane =
+          map.planes[static_cast<size_t>(row) * map.width + col];
+      if (!(plane.distance > 0)) continue;
+      const PlaneSlope slope = SlopeOf(ref, plane);
+      float u, v;
+      counts.push_back(std::count_if(
+          witnesses.begin(), witnesses.end(), [&](const Witness& witness) {
+            return IsSeen(witness.view.to_src,
+                          slope,
+                          static_cast<float>(col),
+                          static_cast<float>(row),
+                          &u,
+                          &v);
+          }));
+    }
+  }
+  if (counts.empty()) return 1;
+  const auto middle =
+      counts.begin() + static_cast<ptrdiff_t>(counts.size() / 2);
+  std::nth_element(counts.begin(), middle, counts.end());
+  return std::max(1, static_cast<int>(*middle));
 }
 
 struct Pixel {
@@ -200,9 +231,10 @@ MinedRegions MineRegions(const ViewSet& views,
   const WeakRegions regions = FindWeakRegions(
       *views.ref.image, params.region_max_gradient, params.region_min_share);
   if (regions.num_regions == 0) return {};
-  const int needed = std::min(params.region_min_consistent,
-                              static_cast<int>(witnesses.size()));
   const int step = LatticeStep(map);
+  const int needed =
+      std::min(params.region_min_consistent,
+               NumSeeingMost(witnesses, views.ref.camera, map, step));
   const auto reliable = [&](const std::vector<Pixel>& pixels) {
     return ReliablePoints(witnesses,
                           views.ref.camera,

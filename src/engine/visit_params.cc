@@ -17,6 +17,13 @@ float Parallax(const ViewSet& views) {
   return parallax;
 }
 
+PatchShape ShapeOf(const MethodParams& params) {
+  return MakePatchShape(params.patch_radius,
+                        params.sigma_spatial,
+                        params.sigma_color,
+                        params.cut_color);
+}
+
 VisitParams MakeVisitParams(const ViewSet& views, const MethodParams& params) {
   VisitParams visit = {};
   visit.ref = views.ref.camera;

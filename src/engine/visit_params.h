@@ -2,11 +2,14 @@
 // parameters, the same for every backend.
 #pragma once
 
+#include "src/core/match_cost.h"
 #include "src/core/visit.h"
 #include "src/engine/pass.h"
 #include "src/engine/view.h"
 
 namespace hpm {
+
+PatchShape ShapeOf(const MethodParams& params);
 
 VisitParams MakeVisitParams(const ViewSet& views, const MethodParams& params);
 

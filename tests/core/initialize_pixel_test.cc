@@ -107,7 +107,7 @@ TEST_F(InitializePixelTest, CurrentStartKeepsTheStoredPlane) {
   EXPECT_EQ(plane.normal.z, stored_.normal.z);
 }
 
-TEST(StartsAt, MissingAndScoreAreEachOthersComplement) {
+TEST(StartsAt, AMissingStartTouchesOnlyWhatIsMissing) {
   const Plane none = {{0, 0, 0}, 0}, some = {{0, 0, -1}, 3};
   EXPECT_TRUE(StartsAt(StartFrom::kMissing, none));
   EXPECT_FALSE(StartsAt(StartFrom::kMissing, some));

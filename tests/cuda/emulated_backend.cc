@@ -1,5 +1,7 @@
 #include "tests/cuda/emulated_backend.h"
 
+#include "cuda/upsampled_prior.h"
+
 #include <algorithm>
 
 namespace hpm {

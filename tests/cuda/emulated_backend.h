@@ -3,8 +3,8 @@
 #pragma once
 
 #include "cuda/problem_tables.h"
-#include "cuda/sweeps.h"
 #include "src/engine/backend.h"
+#include "src/engine/sweeps.h"
 #include "tests/cuda/host_launch.h"
 
 #include <memory>

@@ -16,7 +16,9 @@ struct Launch {
 
 template <SweepKind kKind, class Cost>
 void Visit(const Launch& launch, const Cost& cost, const Pixel& pixel) {
-  VisitPixel<kKind>(launch.problem,
+  VisitPixel<kKind>(launch.problem.params,
+                    launch.problem.pattern,
+                    launch.problem.src_centers,
                     launch.sweep,
                     launch.state,
                     launch.consistent,
@@ -91,15 +93,11 @@ uint64_t RunBand(EmulatedCost cost,
     case SweepKind::kConsistency:
       return RunWith<SweepKind::kConsistency>(cost, launch);
     case SweepKind::kFollow:
-      ForEachPixel(band, [&](const Pixel& pixel) {
-        TakeNeighbour(problem.params, state, pixel.col, pixel.row);
-      });
-      return 0;
     case SweepKind::kMedian:
       break;
   }
   ForEachPixel(band, [&](const Pixel& pixel) {
-    MedianFilterPixel(problem.params.ref, state, pixel.col, pixel.row);
+    VisitPixel(problem.params, sweep, state, pixel.col, pixel.row);
   });
   return 0;
 }

@@ -1,8 +1,9 @@
 // What a kernel of the CUDA backend does, as loops on the host.
 #pragma once
 
-#include "cuda/pixel_kernels.h"
+#include "cuda/device_problem.h"
 #include "cuda/pixel_tiles.h"
+#include "src/core/sweep.h"
 
 #include <cstdint>
 #include <vector>

@@ -2,6 +2,7 @@
 
 #include "cuda/check.h"
 #include "cuda/launch.h"
+#include "cuda/upsampled_prior.h"
 #include "tests/cuda/host_launch.h"
 
 #include <array>

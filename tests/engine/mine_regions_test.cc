@@ -139,6 +139,15 @@ TEST_F(MineRegionsTest, ViewsThatDisagreeHaveNoSay) {
   for (const Plane& prior : priors) EXPECT_EQ(prior.distance, 0);
 }
 
+// Two of the three sources are zoomed in on a part of what the other one sees.
+TEST_F(MineRegionsTest, ViewsOfAPartOfTheImageAreNotAskedForTheRest) {
+  for (const size_t j : {1, 2}) {
+    views_.srcs[j].camera.fx *= 4;
+    views_.srcs[j].camera.fy *= 4;
+  }
+  EXPECT_NEAR(MeanScale(Mine()), 1, 1e-3);
+}
+
 TEST_F(MineRegionsTest, WhatNoBelievedPlaneExplainsIsMarked) {
   const size_t size = map_.planes.size();
   EXPECT_EQ(MineAll().unexplained, std::vector<bool>(size, false));

@@ -1,4 +1,4 @@
-#include "cuda/sweeps.h"
+#include "src/engine/sweeps.h"
 
 namespace hpm {
 

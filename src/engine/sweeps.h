@@ -1,10 +1,10 @@
-// A pass as the list of its half-sweeps. The keys of the random numbers are
-// those of the CPU backend.
+// A pass as the list of its half-sweeps, in order.
 #pragma once
 
-#include "cuda/pixel_kernels.h"
+#include "src/core/sweep.h"
 #include "src/engine/pass.h"
 
+#include <cstdint>
 #include <vector>
 
 namespace hpm {

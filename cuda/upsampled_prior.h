@@ -1,0 +1,30 @@
+#pragma once
+
+#include "cuda/device_problem.h"
+#include "src/core/upsample_plane.h"
+
+namespace hpm {
+
+// A prior of a coarser level at one pixel; the reference image guides.
+HPM_HD Plane UpsampledPriorAt(const DeviceProblem& problem,
+                              const Plane* low,
+                              int level,
+                              int col,
+                              int row) {
+  const int width = problem.params.ref.width;
+  return UpsamplePlaneAt(
+      low,
+      level,
+      problem.params.ref,
+      [&](int c, int r) {
+        return problem.ref_grey[static_cast<size_t>(r) * width + c];
+      },
+      [](float dx, float dy) { return UpsampleSpatialWeight(dx, dy); },
+      [](int d) { return UpsampleColorWeight(d); },
+      problem.params.depth_min,
+      problem.params.depth_max,
+      col,
+      row);
+}
+
+}  // namespace hpm

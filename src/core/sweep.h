@@ -1,0 +1,72 @@
+// A half-sweep, as data, and what it does at one pixel of its colour. CPU and
+// CUDA both go through VisitPixel(), so that a pass is the same on all of them.
+#pragma once
+
+#include "src/core/consistency_filter.h"
+#include "src/core/initialize_pixel.h"
+#include "src/core/median_filter.h"
+#include "src/core/take_neighbour.h"
+#include "src/core/update_pixel.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+namespace hpm {
+
+enum class SweepKind { kInitialize, kUpdate, kFollow, kMedian, kConsistency };
+constexpr int kNumSweepKinds = static_cast<int>(SweepKind::kConsistency) + 1;
+
+struct Sweep {
+  SweepKind kind;
+  int color;            // 0 or 1: parity of col + row
+  uint64_t key;         // of the random numbers
+  StartFrom start;      // kInitialize
+  int iteration;        // kUpdate
+  bool geometric;       // kUpdate, kConsistency
+  FilterParams filter;  // kConsistency
+};
+
+// One visit of a sweep that needs no matching cost.
+HPM_HD void VisitPixel(const VisitParams& params,
+                       const Sweep& sweep,
+                       const PixelState& state,
+                       int col,
+                       int row) {
+  if (sweep.kind == SweepKind::kFollow) {
+    TakeNeighbour(params, state, col, row);
+  } else {
+    MedianFilterPixel(params.ref, state, col, row);
+  }
+}
+
+// One visit of a sweep that does. `params.geometric` is that of the sweep.
+// `src_centers`: in the reference camera frame; `consistent`: one mask per
+// pixel; both for kConsistency alone.
+template <SweepKind kKind, class Cost>
+HPM_HD void VisitPixel(const VisitParams& params,
+                       const SamplingPattern& pattern,
+                       const Vec3f* src_centers,
+                       const Sweep& sweep,
+                       const PixelState& state,
+                       uint32_t* consistent,
+                       const Cost& cost,
+                       int col,
+                       int row) {
+  static_assert(kKind != SweepKind::kFollow && kKind != SweepKind::kMedian,
+                "they need no cost");
+  if constexpr (kKind == SweepKind::kConsistency) {
+    const size_t at = static_cast<size_t>(row) * state.width + col;
+    consistent[at] = ConsistentViews(
+        params, sweep.filter, src_centers, cost, state.planes[at], col, row);
+  } else {
+    Rng rng(sweep.key, col, row);
+    if constexpr (kKind == SweepKind::kInitialize) {
+      InitializePixel(params, state, sweep.start, cost, &rng, col, row);
+    } else {
+      UpdatePixel(
+          params, pattern, state, cost, &rng, sweep.iteration, col, row);
+    }
+  }
+}
+
+}  // namespace hpm
