@@ -18,6 +18,7 @@ PACKAGES=(
   libhwy-dev
   libtbb-dev
   libfmt-dev
+  libxxhash-dev
   nlohmann-json3-dev
   libgtest-dev libgmock-dev
 )

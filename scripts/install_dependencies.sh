@@ -20,6 +20,7 @@ PACKAGES=(
   libhwy-dev
   libtbb-dev
   libfmt-dev
+  libxxhash-dev
   nlohmann-json3-dev
   # tests (clang is the second compiler), format, lint
   libgtest-dev libgmock-dev libbenchmark-dev

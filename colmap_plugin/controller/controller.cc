@@ -3,6 +3,7 @@
 #include "colmap_plugin/controller/cut_maps.h"
 #include "colmap_plugin/controller/deep_images.h"
 #include "colmap_plugin/controller/devices.h"
+#include "colmap_plugin/controller/image_contents.h"
 #include "colmap_plugin/controller/method_options.h"
 #include "colmap_plugin/controller/run_budget.h"
 #include "colmap_plugin/controller/run_statistics.h"
@@ -11,6 +12,7 @@
 #include "colmap_plugin/controller/worker_pool.h"
 #include "colmap_plugin/formats/atomic_file.h"
 #include "colmap_plugin/workspace/far_origin.h"
+#include "colmap_plugin/workspace/image_files.h"
 #include "colmap_plugin/workspace/output_check.h"
 #include "colmap_plugin/workspace/run_lock.h"
 #include "colmap_plugin/workspace/run_record.h"
@@ -111,6 +113,24 @@ void ForgetMaps(const Workspace& workspace,
   RemoveInnerMaps(workspace);
 }
 
+// What came from such images is stamped as incomplete.
+void WarnOfChangedImages(const Workspace& workspace,
+                         const std::vector<StereoProblem>& problems,
+                         const ImageContents& contents,
+                         const LogSink& log) {
+  ImageFault changed;
+  for (const StereoProblem& problem : problems) {
+    if (CanBeComputed(workspace, problem) &&
+        !contents.IsUnchanged(problem.ref_image))
+      changed.Add(workspace.ImagePath(problem.ref_image).string());
+  }
+  if (changed.num() == 0) return;
+  log(LogLevel::kWarning,
+      changed.Line(static_cast<int>(problems.size()),
+                   "changed during this run") +
+          "; run again, which makes anew what was made from them");
+}
+
 int CountFinalMaps(const Workspace& workspace, const StagePlan& plan) {
   const std::string& stage = plan.stages().back().name;
   int count = 0;
@@ -148,7 +168,8 @@ RunSummary PatchMatchController::Run() {
   CancelToken stop(&cancel_);
   const RunLock lock(workspace.StatePath(), log_, &stop);
   RemoveStaleTemporaries(workspace.StereoPath());
-  workspace.StretchDeepImages(FindDeepRange(workspace, log_, stop));
+  ImageContents contents(workspace);
+  workspace.StretchDeepImages(FindDeepRange(workspace, &contents, log_, stop));
 
   log_(LogLevel::kInfo, "Reading configuration...");
   const ProblemOptions problem_options = MakeProblemOptions(options_);
@@ -166,11 +187,12 @@ RunSummary PatchMatchController::Run() {
         LevelsOf(FindMethod(options_.hpm.method), workspace);
   }
   const Schedule schedule = MakeSchedule(MakeScheduleOptions(options_));
-  StagePlan plan(workspace, problems, schedule, options_);
+  StagePlan plan(workspace, problems, schedule, options_, &contents, stop);
   PrepareOutputs(workspace, problems, BytesToWrite(problems, plan), log_);
   if (!plan.damaged_maps().empty()) {
     log_(LogLevel::kWarning,
-         fmt::format("{} maps are damaged and computed anew, the first: {}",
+         fmt::format("{} maps are damaged or were changed by others, and are "
+                     "computed anew, the first: {}",
                      plan.damaged_maps().size(),
                      plan.damaged_maps().begin()->string()));
   }
@@ -272,6 +294,7 @@ RunSummary PatchMatchController::Run() {
     }
   }
   lock.ThrowIfLost();
+  WarnOfChangedImages(workspace, problems, contents, log_);
   // In this order: a cut that is cut short is made good from the inner maps.
   if (!statistics.AnyFailed())
     CutInputMaps(workspace, problems, plan, lock, stop);
@@ -363,8 +386,8 @@ void PatchMatchController::RunStages(const Workspace& workspace,
         // Not before: an image that cannot be decoded changes the plan.
         if (!statistics->AnyWork() && plan.ReplacesForeignMaps()) {
           log_(LogLevel::kWarning,
-               "maps made with other options or by another program are "
-               "computed anew");
+               "maps made with other options, from other images, by another "
+               "version or by another program are computed anew");
         }
         statistics->Add(name,
                         is_reference,

@@ -18,14 +18,14 @@ void CutMaps(const Workspace& workspace,
   DropOutside(p.published, &maps);
   const std::string& name = workspace.ImageName(p.ref_image);
   const std::string stage_name = plan.NameOf(stage, p.ref_image);
+  // The graph stays.
+  Stamp stamp =
+      ReadStamp(workspace.StatePath(), name, stage_name).value_or(Stamp{});
   RemoveStamp(workspace.StatePath(), name, stage_name);
-  WriteMap(files.normal, maps.normal);
-  WriteMap(files.depth, maps.depth);
-  WriteStamp(workspace.StatePath(),
-             name,
-             stage_name,
-             plan.CutFingerprintOf(stage, problem),
-             nullptr);
+  stamp.fingerprint = plan.CutFingerprintOf(stage, problem);
+  stamp.files["normal"] = WriteMap(files.normal, maps.normal);
+  stamp.files["depth"] = WriteMap(files.depth, maps.depth);
+  WriteStamp(workspace.StatePath(), name, stage_name, stamp);
 }
 
 }  // namespace

@@ -2,13 +2,11 @@
 
 #include "colmap_plugin/controller/run_budget.h"
 #include "colmap_plugin/formats/atomic_file.h"
-#include "colmap_plugin/workspace/fingerprint.h"
 #include "src/engine/memory_plan.h"
 
 #include <algorithm>
 #include <fstream>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include <fmt/format.h>
@@ -22,29 +20,26 @@ namespace {
 
 struct DeepImage {
   int index = 0;
-  std::string key;  // of this file in the record of what was found
+  std::string key;  // in the record of what was found; empty: none
   std::optional<GreyRange> range;
 };
 
-std::vector<DeepImage> DeepImagesOf(const Workspace& workspace) {
-  std::vector<DeepImage> images;
+std::vector<DeepImage> DeepImagesOf(const Workspace& workspace,
+                                    ImageContents* contents,
+                                    const CancelToken& cancel) {
+  std::vector<int> deep;
   for (int i = 0; i < workspace.num_images(); ++i) {
     const std::optional<ImageSize>& size = workspace.file_size(i);
     if (!workspace.usable(i) || !workspace.has_picture(i) || !size ||
         size->depth == SampleDepth::k8) {
       continue;
     }
-    const fs::path path = workspace.ImagePath(i);
-    std::error_code ignored;
-    const std::string key =
-        Fingerprint()
-            .AddString(workspace.ImageName(i))
-            .AddInt(static_cast<int64_t>(fs::file_size(path, ignored)))
-            .AddInt(
-                fs::last_write_time(path, ignored).time_since_epoch().count())
-            .Hex();
-    images.push_back({i, key, std::nullopt});
+    deep.push_back(i);
   }
+  contents->Read(deep, cancel);
+  std::vector<DeepImage> images;
+  for (const int image : deep)
+    images.push_back({image, contents->HashOf(image), std::nullopt});
   return images;
 }
 
@@ -71,7 +66,8 @@ void WriteRecord(const Workspace& workspace,
                  const std::vector<DeepImage>& images) {
   nlohmann::json json = nlohmann::json::object();
   for (const DeepImage& image : images) {
-    if (image.range) json[image.key] = {image.range->low, image.range->high};
+    if (image.range && !image.key.empty())
+      json[image.key] = {image.range->low, image.range->high};
   }
   WriteFileAtomically(RecordPath(workspace), json.dump(1) + "\n");
 }
@@ -106,9 +102,10 @@ bool Measure(const Workspace& workspace,
 }  // namespace
 
 std::optional<GreyRange> FindDeepRange(const Workspace& workspace,
+                                       ImageContents* contents,
                                        const LogSink& log,
                                        const CancelToken& cancel) {
-  std::vector<DeepImage> images = DeepImagesOf(workspace);
+  std::vector<DeepImage> images = DeepImagesOf(workspace, contents, cancel);
   if (images.empty()) return std::nullopt;
   ReadRecord(workspace, &images);
   if (Measure(workspace, cancel, &images)) WriteRecord(workspace, images);

@@ -2,6 +2,7 @@
 // point. All are stretched alike, since brightness is compared across them.
 #pragma once
 
+#include "colmap_plugin/controller/image_contents.h"
 #include "colmap_plugin/workspace/workspace.h"
 #include "src/base/cancel.h"
 
@@ -14,8 +15,9 @@ namespace hpm {
 // when they are simply cut: then they are, as COLMAP does.
 //
 // Each image is decoded once for that; what was found is kept in the state
-// folder.
+// folder, by their contents.
 std::optional<GreyRange> FindDeepRange(const Workspace& workspace,
+                                       ImageContents* contents,
                                        const LogSink& log,
                                        const CancelToken& cancel);
 

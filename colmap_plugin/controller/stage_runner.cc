@@ -228,11 +228,13 @@ void StageRunner::Publish(int stage,
     std::error_code ignored;
     std::filesystem::remove(files.graph, ignored);
   }
+  Stamp stamp;
   constexpr DepthRange kAll = {0, std::numeric_limits<float>::infinity()};
   WriteMaps(views.ref.camera,
             info.is_final ? problems_[problem].published : kAll,
             filter ? &keep : nullptr,
             files,
+            &stamp,
             result);
   if (plan_.WritesGraph(stage, image)) {
     ConsistencyGraph graph = {map.width, map.height, {}};
@@ -246,26 +248,27 @@ void StageRunner::Publish(int stage,
         if (consistent[i] >> j & 1) graph.data.push_back(src_images_[j]);
       }
     }
-    WriteConsistencyGraph(files.graph, graph);
+    stamp.files["graph"] = WriteConsistencyGraph(files.graph, graph);
   }
   if (options_.hpm.previews && info.is_final) {
     WritePreviews(workspace_.StereoPath() / "previews",
                   name,
                   {ReadMap(files.depth), ReadMap(files.normal)});
   }
+  const bool is_complete = !misses_maps_ && plan_.HasSameImages(problem);
+  stamp.fingerprint = is_complete
+                          ? plan_.FingerprintOf(stage, problem)
+                          : plan_.IncompleteFingerprintOf(stage, problem);
+  stamp.statistics = ToJson(*result);
   lock_.ThrowIfLost();
-  WriteStamp(workspace_.StatePath(),
-             name,
-             stage_name,
-             misses_maps_ ? plan_.IncompleteFingerprintOf(stage, problem)
-                          : plan_.FingerprintOf(stage, problem),
-             ToJson(*result));
+  WriteStamp(workspace_.StatePath(), name, stage_name, stamp);
 }
 
 void StageRunner::WriteMaps(const Camera& camera,
                             const DepthRange& range,
                             const std::vector<bool>* keep,
                             const StageFiles& files,
+                            Stamp* stamp,
                             StageResult* result) {
   const int width = map_.width, height = map_.height;
   MapWriter normal(files.normal, {width, height, 3});
@@ -274,9 +277,9 @@ void StageRunner::WriteMaps(const Camera& camera,
       WritePlanes(map_, camera, range, keep, &depth, &normal);
   // The disk may take both at once; their names appear in this order.
   tbb::parallel_invoke([&] { normal.Flush(); }, [&] { depth.Flush(); });
-  normal.Commit();
+  stamp->files["normal"] = normal.Commit();
   lock_.ThrowIfLost();
-  depth.Commit();
+  stamp->files["depth"] = depth.Commit();
   const auto size = static_cast<double>(map_.planes.size());
   const size_t num_without = map_.planes.size() - written.num_valid;
   result->valid_pixel_share = 1.0 - static_cast<double>(num_without) / size;

@@ -59,6 +59,7 @@ class StageRunner {
                  const DepthRange& range,
                  const std::vector<bool>* keep,
                  const StageFiles& files,
+                 Stamp* stamp,
                  StageResult* result);
 
   const Workspace& workspace_;

@@ -1,15 +1,17 @@
 #include "colmap_plugin/controller/stages.h"
 
 #include "colmap_plugin/controller/method_options.h"
-#include "colmap_plugin/formats/consistency_graph.h"
+#include "colmap_plugin/formats/content_hash.h"
 #include "colmap_plugin/formats/map_file.h"
 #include "colmap_plugin/workspace/fingerprint.h"
 #include "colmap_plugin/workspace/source_level.h"
-#include "colmap_plugin/workspace/stamp.h"
 #include "src/base/error.h"
 
 #include <algorithm>
+#include <map>
 #include <system_error>
+
+#include <tbb/parallel_for.h>
 
 namespace hpm {
 namespace {
@@ -52,15 +54,12 @@ std::vector<Stage> MakeStages(const Schedule& schedule) {
 
 // The pose as the reference sees it.
 void AddImage(const Workspace& workspace,
+              const ImageContents& contents,
               int image,
               int ref_image,
               Fingerprint* hash) {
   const Camera camera = workspace.CameraAround(image, ref_image);
-  std::error_code error;
-  const auto num_bytes =
-      std::filesystem::file_size(workspace.ImagePath(image), error);
-  hash->AddString(workspace.ImageName(image))
-      .AddInt(error ? -1 : static_cast<int64_t>(num_bytes));
+  hash->AddString(workspace.ImageName(image)).AddString(contents.HashOf(image));
   hash->AddInt(camera.width).AddInt(camera.height);
   for (const float v : {camera.fx, camera.fy, camera.cx, camera.cy})
     hash->AddDouble(v);
@@ -106,6 +105,7 @@ void AddFilter(const PatchMatchStereoOptions& options, Fingerprint* hash) {
 
 // What a stage of a problem depends on beside the stage before.
 std::string OwnFingerprint(const Workspace& workspace,
+                           const ImageContents& contents,
                            const StereoProblem& problem,
                            const Stage& stage,
                            const ControllerOptions& options) {
@@ -113,9 +113,9 @@ std::string OwnFingerprint(const Workspace& workspace,
   hash.AddInt(kAlgorithmVersion)
       .AddString(stage.name)
       .AddInt(options.random_seed);
-  AddImage(workspace, problem.ref_image, problem.ref_image, &hash);
+  AddImage(workspace, contents, problem.ref_image, problem.ref_image, &hash);
   for (const int src : problem.src_images) {
-    AddImage(workspace, src, problem.ref_image, &hash);
+    AddImage(workspace, contents, src, problem.ref_image, &hash);
     const int level = SourceLevel(workspace, problem, src);
     if (level > 0) hash.AddString("halved").AddInt(level);
   }
@@ -145,6 +145,19 @@ std::string OwnFingerprint(const Workspace& workspace,
   return hash.Hex();
 }
 
+// Empty for a file that cannot be read as what it should be.
+std::string ChecksumOf(const std::string& kind,
+                       const std::filesystem::path& path,
+                       const CancelToken& cancel) {
+  try {
+    return kind == "graph" ? HashFile(path, cancel)
+                           : MapReader(path).Checksum(cancel);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::kBadInput) throw;
+    return "";
+  }
+}
+
 }  // namespace
 
 std::string NameForSources(const Stage& stage) {
@@ -154,10 +167,14 @@ std::string NameForSources(const Stage& stage) {
 StagePlan::StagePlan(const Workspace& workspace,
                      const std::vector<StereoProblem>& problems,
                      const Schedule& schedule,
-                     const ControllerOptions& options)
+                     const ControllerOptions& options,
+                     ImageContents* contents,
+                     const CancelToken& cancel)
     : workspace_(workspace),
       problems_(problems),
       options_(options),
+      contents_(contents),
+      cancel_(cancel),
       stages_(MakeStages(schedule)) {
   Update();
 }
@@ -167,8 +184,14 @@ void StagePlan::Update() {
   const int num_stages = static_cast<int>(stages_.size());
   const int num_problems = static_cast<int>(problems.size());
   problem_of_image_.assign(workspace_.num_images(), -1);
-  for (int p = 0; p < num_problems; ++p)
+  std::vector<int> images;
+  for (int p = 0; p < num_problems; ++p) {
     problem_of_image_[problems[p].ref_image] = p;
+    images.push_back(problems[p].ref_image);
+    const std::vector<int>& sources = problems[p].src_images;
+    images.insert(images.end(), sources.begin(), sources.end());
+  }
+  contents_->Read(images, cancel_);
 
   fingerprints_.clear();
   found_foreign_maps_ = false;
@@ -176,8 +199,8 @@ void StagePlan::Update() {
     fingerprints_.emplace_back();
     for (int p = 0; p < num_problems; ++p) {
       Fingerprint hash;
-      hash.AddString(
-          OwnFingerprint(workspace_, problems[p], stages_[s], options_));
+      hash.AddString(OwnFingerprint(
+          workspace_, *contents_, problems[p], stages_[s], options_));
       if (s > 0) {
         hash.AddString(fingerprints_[s - 1][p]);
         for (const int src : problems[p].src_images) {
@@ -203,12 +226,23 @@ void StagePlan::Update() {
         if (problem_of_image_[src] >= 0) wanted[problem_of_image_[src]] = true;
       }
     }
+    std::vector<int> asked;
     for (int p = 0; p < num_problems; ++p) {
-      if (!CanBeComputed(workspace_, problems[p]) ||
-          (!wanted[p] && !IsPublic(s, problems[p].ref_image))) {
-        continue;
+      if (CanBeComputed(workspace_, problems[p]) &&
+          (wanted[p] || IsPublic(s, problems[p].ref_image))) {
+        asked.push_back(p);
       }
-      needed_[s][p] = options_.hpm.overwrite || !IsFinished(s, p, !wanted[p]);
+    }
+    std::vector<Found> found(asked.size());
+    if (!options_.hpm.overwrite) {
+      tbb::parallel_for(size_t{0}, asked.size(), [&](size_t i) {
+        found[i] = Look(s, asked[i], !wanted[asked[i]]);
+      });
+    }
+    for (size_t i = 0; i < asked.size(); ++i) {
+      needed_[s][asked[i]] = !found[i].is_finished;
+      found_foreign_maps_ |= found[i].is_foreign;
+      damaged_maps_.insert(found[i].damaged.begin(), found[i].damaged.end());
     }
   }
   replaces_foreign_maps_ = replaces_foreign_maps_ && found_foreign_maps_;
@@ -239,9 +273,10 @@ StageFiles StagePlan::Files(int s, int image) const {
   return {folder / (name + ".depth.bin"), folder / (name + ".normal.bin"), {}};
 }
 
-std::optional<std::string> StagePlan::StampOf(int s, int image) const {
-  return ReadStampFingerprint(
+std::string StagePlan::FingerprintOnDisk(int s, int image) const {
+  const std::optional<Stamp> stamp = ReadStamp(
       workspace_.StatePath(), workspace_.ImageName(image), NameOf(s, image));
+  return stamp ? stamp->fingerprint : "";
 }
 
 std::string StagePlan::NameOf(int s, int image) const {
@@ -255,60 +290,87 @@ bool StagePlan::IsPublic(int s, int image) const {
   return stages_[s].is_public && (p < 0 || problems_[p].is_reference);
 }
 
+bool StagePlan::HasSameImages(int p) const {
+  const std::vector<int>& sources = problems_[p].src_images;
+  return contents_->IsUnchanged(problems_[p].ref_image) &&
+         std::all_of(sources.begin(), sources.end(), [&](int src) {
+           return contents_->IsUnchanged(src);
+         });
+}
+
 bool StagePlan::HasCompleteMaps(int s, int image) const {
   const int p = problem_of_image_[image];
-  return p >= 0 && StampOf(s, image) == fingerprints_[s][p];
+  return p >= 0 && FingerprintOnDisk(s, image) == fingerprints_[s][p];
 }
 
 bool StagePlan::HasCurrentMaps(int s, int image) const {
   const int p = problem_of_image_[image];
   return HasCompleteMaps(s, image) ||
-         (p >= 0 && StampOf(s, image) == IncompleteFingerprintOf(s, p));
+         (p >= 0 &&
+          FingerprintOnDisk(s, image) == IncompleteFingerprintOf(s, p));
 }
 
 bool StagePlan::WritesGraph(int s, int image) const {
   return options_.patch_match.write_consistency_graph && IsPublic(s, image);
 }
 
-bool StagePlan::IsFinished(int s, int p, bool may_be_cut) {
+StagePlan::Found StagePlan::Look(int s, int p, bool may_be_cut) const {
   const int image = problems_[p].ref_image;
   const StageFiles files = Files(s, image);
-  std::error_code error;
-  if (!std::filesystem::exists(files.depth, error) ||
-      !std::filesystem::exists(files.normal, error)) {
-    return false;
-  }
-  if (!HasCompleteMaps(s, image)) {
-    const bool is_cut = StampOf(s, image) == CutFingerprintOf(s, p);
-    const std::optional<std::string> stamp = StampOf(s, image);
-    if (!is_cut && stamp != IncompleteFingerprintOf(s, p))
-      found_foreign_maps_ = true;
-    if (!is_cut || !may_be_cut) return false;
-  }
-  const Camera camera = CameraOf(s, image);
-  const auto has_size = [&](const MapHeader& header, int channels) {
-    return header.width == camera.width && header.height == camera.height &&
-           header.channels == channels;
-  };
-  const auto is_whole = [&](const std::filesystem::path& file, int channels) {
-    bool fits = false;
-    try {
-      fits = has_size(ReadMapHeader(file), channels);
-    } catch (const Error&) {
-      // Torn or damaged: made anew.
+  Found found;
+  if (!StateOf(files.depth) || !StateOf(files.normal)) return found;
+  std::optional<Stamp> stamp = ReadStamp(
+      workspace_.StatePath(), workspace_.ImageName(image), NameOf(s, image));
+  const std::string fingerprint = stamp ? stamp->fingerprint : "";
+  const bool is_complete = fingerprint == fingerprints_[s][p];
+  const bool is_cut = fingerprint == CutFingerprintOf(s, p);
+  found.is_foreign =
+      !is_complete && !is_cut && fingerprint != IncompleteFingerprintOf(s, p);
+  if (found.is_foreign) return found;
+  // Incomplete ones, too: where they cannot be made again, others go on with
+  // them.
+  found.is_finished = AreIntact(s, image, &*stamp, &found) &&
+                      (is_complete || (is_cut && may_be_cut));
+  return found;
+}
+
+bool StagePlan::AreIntact(int s, int image, Stamp* stamp, Found* found) const {
+  const StageFiles files = Files(s, image);
+  std::map<std::string, std::filesystem::path> wanted = {
+      {"depth", files.depth}, {"normal", files.normal}};
+  if (WritesGraph(s, image)) wanted["graph"] = files.graph;
+  bool is_absent = false, has_new_time = false;
+  for (const auto& [kind, path] : wanted) {
+    const std::optional<FileState> state = StateOf(path);
+    const auto stamped = stamp->files.find(kind);
+    if (!state || stamped == stamp->files.end()) {
+      is_absent = true;
+      continue;
     }
-    if (!fits) damaged_maps_.insert(file);
-    return fits;
-  };
-  const bool depth_is_whole = is_whole(files.depth, 1);
-  if (!is_whole(files.normal, 3) || !depth_is_whole) return false;
-  if (!WritesGraph(s, image)) return true;
-  try {
-    const ConsistencyGraph graph = ReadConsistencyGraph(files.graph);
-    return graph.width == camera.width && graph.height == camera.height;
-  } catch (const Error&) {
-    return false;
+    PublishedFile& file = stamped->second;
+    if (*state == file.state) continue;
+    if (state->num_bytes != file.state.num_bytes ||
+        ChecksumOf(kind, path, cancel_) != file.checksum) {
+      found->damaged.push_back(path);
+      continue;
+    }
+    file.state = *state;
+    has_new_time = true;
   }
+  const std::filesystem::path& folder = workspace_.StatePath();
+  const std::string& name = workspace_.ImageName(image);
+  if (!found->damaged.empty()) {
+    // Nobody may take these maps for good ones, even if they cannot be made
+    // again.
+    RemoveStamp(folder, name, NameOf(s, image));
+  } else if (has_new_time) {
+    try {
+      WriteStamp(folder, name, NameOf(s, image), *stamp);
+    } catch (const Error&) {
+      // On a full disk the next run has to compare the checksums again.
+    }
+  }
+  return !is_absent && found->damaged.empty();
 }
 
 void RemoveInnerMaps(const Workspace& workspace) {

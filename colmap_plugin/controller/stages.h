@@ -1,10 +1,14 @@
 // The stages of a run and what is left to do in each: photometric, then one per
 // geometric pass. A stage of an image is finished when its maps are complete
-// and its stamp carries the fingerprint of everything the maps depend on.
+// and its stamp carries the fingerprint of everything the maps depend on, the
+// contents of the images among it, and vouches for the maps.
 #pragma once
 
+#include "colmap_plugin/controller/image_contents.h"
 #include "colmap_plugin/controller/options.h"
 #include "colmap_plugin/workspace/problem.h"
+#include "colmap_plugin/workspace/stamp.h"
+#include "src/base/cancel.h"
 #include "src/engine/schedule.h"
 
 #include <filesystem>
@@ -35,12 +39,16 @@ struct StageFiles {
 
 class StagePlan {
  public:
-  // Looks at the files of the workspace; computes nothing. Keeps references to
-  // workspace, problems and options.
+  // Looks at the files of the workspace; computes nothing. Maps whose size and
+  // time are those of their stamp are trusted, of others the checksum decides:
+  // then the stamp gets the new time, or goes. Keeps references to all but the
+  // schedule. Throws Error(kInterrupted).
   StagePlan(const Workspace& workspace,
             const std::vector<StereoProblem>& problems,
             const Schedule& schedule,
-            const ControllerOptions& options);
+            const ControllerOptions& options,
+            ImageContents* contents,
+            const CancelToken& cancel);
 
   // Plans anew after the problems, of the same references, or the options
   // changed.
@@ -52,18 +60,19 @@ class StagePlan {
   // other options.
   bool IsNeeded(int s, int p) const { return needed_[s][p]; }
   int CountNeeded(int s) const;
-  // True if maps exist that were made with other options or by another program,
-  // in the eyes of all plans so far.
+  // True if maps exist that were made with other options, from other images, by
+  // another version or by another program, in the eyes of all plans so far.
   bool ReplacesForeignMaps() const { return replaces_foreign_maps_; }
-  // Maps with a valid stamp that are cut off, empty or otherwise damaged.
+  // Maps that are not what their valid stamp says.
   const std::set<std::filesystem::path>& damaged_maps() const {
     return damaged_maps_;
   }
   const std::string& FingerprintOf(int s, int p) const {
     return fingerprints_[s][p];
   }
-  // What the stamp holds if maps of a source were missing: good enough to go on
-  // with, computed again by the next run.
+  // What the stamp holds if maps of a source were missing, or images changed
+  // while they were used: good enough to go on with, computed again by the next
+  // run.
   std::string IncompleteFingerprintOf(int s, int p) const {
     return fingerprints_[s][p] + "-incomplete";
   }
@@ -77,6 +86,8 @@ class StagePlan {
   // Whether the maps of stage s of the image, if it has a problem, are for
   // others than this program.
   bool IsPublic(int s, int image) const;
+  // Whether the images that problem p was planned with are still the same.
+  bool HasSameImages(int p) const;
   // Whether the image's maps of stage s are those of this plan.
   bool HasCompleteMaps(int s, int image) const;
   // The same, or made without the maps of some source that failed.
@@ -94,12 +105,22 @@ class StagePlan {
   bool WritesGraph(int s, int image) const;
 
  private:
-  bool IsFinished(int s, int p, bool may_be_cut);
-  std::optional<std::string> StampOf(int s, int image) const;
+  // What was found of the maps of a stage of a problem.
+  struct Found {
+    bool is_finished = false;
+    bool is_foreign = false;
+    std::vector<std::filesystem::path> damaged;
+  };
+  Found Look(int s, int p, bool may_be_cut) const;
+  // Whether the files are those the stamp vouches for; see the constructor.
+  bool AreIntact(int s, int image, Stamp* stamp, Found* found) const;
+  std::string FingerprintOnDisk(int s, int image) const;
 
   const Workspace& workspace_;
   const std::vector<StereoProblem>& problems_;
   const ControllerOptions& options_;
+  ImageContents* contents_;
+  const CancelToken& cancel_;
   std::vector<Stage> stages_;
   // -1: the image is neither a reference nor a source of one.
   std::vector<int> problem_of_image_;

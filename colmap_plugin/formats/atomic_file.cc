@@ -134,8 +134,10 @@ void AtomicFile::Flush() {
   if (result != 0) Throw("write", errno);
 }
 
-void AtomicFile::Commit() {
+FileState AtomicFile::Commit() {
   Flush();
+  const std::optional<FileState> state = StateOf(fd_);
+  if (!state) Throw("write", errno);
   // Linux closes the descriptor even if close() fails. EINTR is harmless after
   // fsync.
   const int fd = fd_;
@@ -147,7 +149,7 @@ void AtomicFile::Commit() {
 
   const int folder =
       open(ParentFolder(path_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (folder < 0) return;  // a folder that may be written but not listed
+  if (folder < 0) return *state;  // a folder that may be written but not listed
   const int error = fsync(folder) == 0 ? 0 : errno;
   close(folder);
   // Some network file systems cannot sync a folder: then rename is all there
@@ -155,6 +157,7 @@ void AtomicFile::Commit() {
   if (error != 0 && error != EINVAL && error != ENOTSUP && error != EINTR) {
     Throw("sync the folder of", error);
   }
+  return *state;
 }
 
 void AtomicFile::Throw(const char* action, int error) const {

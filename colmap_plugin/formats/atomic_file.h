@@ -5,6 +5,8 @@
 // program must ignore SIGXFSZ, otherwise a file size limit kills it.
 #pragma once
 
+#include "colmap_plugin/formats/published_file.h"
+
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -31,10 +33,10 @@ class AtomicFile {
   // What was written is on the disk then, so that Commit() has little to do.
   void Flush();
 
-  // Publishes the file. Throws Error(kOutOfResources) on a full disk or quota,
-  // naming the file; nothing is left under the final name then (an older file
-  // stays).
-  void Commit();
+  // Publishes the file, and tells how it lies there. Throws
+  // Error(kOutOfResources) on a full disk or quota, naming the file; nothing is
+  // left under the final name then (an older file stays).
+  FileState Commit();
 
  private:
   template <class WriteSome>

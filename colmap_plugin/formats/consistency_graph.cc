@@ -1,6 +1,7 @@
 #include "colmap_plugin/formats/consistency_graph.h"
 
 #include "colmap_plugin/formats/atomic_file.h"
+#include "colmap_plugin/formats/content_hash.h"
 #include "colmap_plugin/formats/grid_header.h"
 #include "colmap_plugin/formats/input_file.h"
 #include "src/base/error.h"
@@ -56,8 +57,8 @@ ConsistencyGraph ReadConsistencyGraph(const std::filesystem::path& path) {
   return graph;
 }
 
-void WriteConsistencyGraph(const std::filesystem::path& path,
-                           const ConsistencyGraph& graph) {
+PublishedFile WriteConsistencyGraph(const std::filesystem::path& path,
+                                    const ConsistencyGraph& graph) {
   if (!IsWellFormed(graph)) {
     throw Error(ErrorCode::kFailure,
                 fmt::format("refused to write {}: its groups contradict its "
@@ -66,9 +67,13 @@ void WriteConsistencyGraph(const std::filesystem::path& path,
                             path.string()));
   }
   AtomicFile file(path);
-  file.Write(FormatGridHeader(graph.width, graph.height, 1));
-  file.Write(graph.data.data(), graph.data.size() * sizeof(int32_t));
-  file.Commit();
+  const std::string header = FormatGridHeader(graph.width, graph.height, 1);
+  const size_t data_bytes = graph.data.size() * sizeof(int32_t);
+  file.Write(header);
+  file.Write(graph.data.data(), data_bytes);
+  ContentHash hash;
+  hash.Add(header.data(), header.size()).Add(graph.data.data(), data_bytes);
+  return {file.Commit(), hash.Hex()};
 }
 
 }  // namespace hpm

@@ -3,6 +3,8 @@
 // source. idx is the image index of SparseModel, not the image id.
 #pragma once
 
+#include "colmap_plugin/formats/published_file.h"
+
 #include <cstdint>
 #include <filesystem>
 #include <vector>
@@ -19,8 +21,9 @@ struct ConsistencyGraph {
 // outside the image, is empty or has a negative index.
 ConsistencyGraph ReadConsistencyGraph(const std::filesystem::path& path);
 
-// Atomic. Throws Error(kFailure) for groups that the reader would refuse.
-void WriteConsistencyGraph(const std::filesystem::path& path,
-                           const ConsistencyGraph& graph);
+// Atomic. Throws Error(kFailure) for groups that the reader would refuse. The
+// checksum is HashFile()'s.
+PublishedFile WriteConsistencyGraph(const std::filesystem::path& path,
+                                    const ConsistencyGraph& graph);
 
 }  // namespace hpm

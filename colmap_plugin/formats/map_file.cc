@@ -56,6 +56,12 @@ void CheckSize(const std::filesystem::path& path, const Map& map) {
   }
 }
 
+// The checksum of a map is the hash of its header and of the hashes of its
+// rows, so that rows may be written in any order.
+PieceHash HashRow(const float* values, int width) {
+  return HashPiece(values, static_cast<size_t>(width) * sizeof(float));
+}
+
 // Without a branch, so that the compiler looks at several at once.
 bool AreFinite(const float* values, size_t count) {
   constexpr uint32_t kExponent = 0x7f800000;
@@ -92,6 +98,30 @@ void MapReader::ReadRows(int channel,
   }
 }
 
+std::string MapReader::Checksum(const CancelToken& cancel) const {
+  std::string text(header_bytes_, '\0');
+  text.resize(file_.ReadAt(0, text.data(), text.size()));
+  ContentHash hash;
+  hash.Add(text.data(), text.size());
+  constexpr int kPartValues = 1 << 16;
+  const int part_rows =
+      std::clamp(kPartValues / header_.width, 1, header_.height);
+  std::vector<float> values(static_cast<size_t>(part_rows) * header_.width);
+  for (int channel = 0; channel < header_.channels; ++channel) {
+    for (int row = 0; row < header_.height; row += part_rows) {
+      cancel.ThrowIfCancelled();
+      const int num_rows = std::min(part_rows, header_.height - row);
+      ReadRows(channel, row, num_rows, values.data());
+      for (int i = 0; i < num_rows; ++i) {
+        const PieceHash row_hash = HashRow(
+            &values[static_cast<size_t>(i) * header_.width], header_.width);
+        hash.Add(&row_hash, sizeof(row_hash));
+      }
+    }
+  }
+  return hash.Hex();
+}
+
 MapHeader ReadMapHeader(const std::filesystem::path& path) {
   return MapReader(path).header();
 }
@@ -107,11 +137,15 @@ Map ReadMap(const std::filesystem::path& path) {
 }
 
 MapWriter::MapWriter(const std::filesystem::path& path, const MapHeader& header)
-    : path_(path), header_(header), file_(path) {
+    : path_(path),
+      header_(header),
+      row_hashes_(static_cast<size_t>(header.height) * header.channels),
+      file_(path) {
   const std::string text =
       FormatGridHeader(header.width, header.height, header.channels);
   header_bytes_ = text.size();
   file_.Write(text);
+  hash_.Add(text.data(), text.size());
 }
 
 void MapWriter::WriteRows(int channel,
@@ -135,9 +169,17 @@ void MapWriter::WriteRows(int channel,
   file_.WriteAt(header_bytes_ + first_row * width * sizeof(float),
                 values,
                 count * sizeof(float));
+  for (int i = 0; i < num_rows; ++i)
+    row_hashes_[first_row + i] = HashRow(values + i * width, header_.width);
 }
 
-void WriteMap(const std::filesystem::path& path, const Map& map) {
+PublishedFile MapWriter::Commit() {
+  const FileState state = file_.Commit();
+  hash_.Add(row_hashes_.data(), row_hashes_.size() * sizeof(PieceHash));
+  return {state, hash_.Hex()};
+}
+
+PublishedFile WriteMap(const std::filesystem::path& path, const Map& map) {
   CheckSize(path, map);
   const size_t num_pixels = map.data.size() / map.channels;
   MapWriter writer(path, {map.width, map.height, map.channels});
@@ -145,7 +187,7 @@ void WriteMap(const std::filesystem::path& path, const Map& map) {
     writer.WriteRows(
         channel, 0, map.height, map.data.data() + channel * num_pixels);
   }
-  writer.Commit();
+  return writer.Commit();
 }
 
 }  // namespace hpm

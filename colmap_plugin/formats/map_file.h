@@ -3,6 +3,7 @@
 #pragma once
 
 #include "colmap_plugin/formats/atomic_file.h"
+#include "colmap_plugin/formats/content_hash.h"
 #include "colmap_plugin/formats/input_file.h"
 
 #include <filesystem>
@@ -42,6 +43,10 @@ class MapReader {
   // `values` has room for so many rows of one channel.
   void ReadRows(int channel, int row, int num_rows, float* values) const;
 
+  // What the file's writer told, if nothing changed since. Throws
+  // Error(kInterrupted), too.
+  std::string Checksum(const CancelToken& cancel) const;
+
  private:
   InputFile file_;
   MapHeader header_;
@@ -63,18 +68,20 @@ class MapWriter {
   void WriteRows(int channel, int row, int num_rows, const float* values);
 
   void Flush() { file_.Flush(); }
-  void Commit() { file_.Commit(); }
+  PublishedFile Commit();
 
  private:
   std::filesystem::path path_;
   MapHeader header_;
   uint64_t header_bytes_;
+  ContentHash hash_;
+  std::vector<PieceHash> row_hashes_;  // channel by channel
   AtomicFile file_;
 };
 
 // Atomic: writes a temporary file beside `path`, then renames (see
 // atomic_file.h). Throws Error(kFailure) on non-finite values,
 // Error(kOutOfResources) on a full disk.
-void WriteMap(const std::filesystem::path& path, const Map& map);
+PublishedFile WriteMap(const std::filesystem::path& path, const Map& map);
 
 }  // namespace hpm

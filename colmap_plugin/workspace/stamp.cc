@@ -4,12 +4,36 @@
 #include "colmap_plugin/formats/image_name.h"
 
 #include <fstream>
+#include <utility>
 
 namespace hpm {
 namespace {
 
 // Far above any stamp; a larger file is not ours.
 constexpr size_t kMaxStampBytes = 1 << 20;
+
+// Raise when stamps vouch for more, or in another way, than they did.
+constexpr int kStampVersion = 2;
+
+nlohmann::json ToJson(const PublishedFile& file) {
+  return {{"bytes", file.state.num_bytes},
+          {"time_ns", file.state.time_ns},
+          {"xxh3", file.checksum}};
+}
+
+std::optional<PublishedFile> FileFrom(const nlohmann::json& json) {
+  if (!json.is_object()) return std::nullopt;
+  const auto bytes = json.find("bytes");
+  const auto time = json.find("time_ns");
+  const auto checksum = json.find("xxh3");
+  if (bytes == json.end() || !bytes->is_number_integer() ||
+      time == json.end() || !time->is_number_integer() ||
+      checksum == json.end() || !checksum->is_string()) {
+    return std::nullopt;
+  }
+  return PublishedFile{{bytes->get<uint64_t>(), time->get<int64_t>()},
+                       checksum->get<std::string>()};
+}
 
 }  // namespace
 
@@ -25,16 +49,19 @@ std::filesystem::path StampPath(const std::filesystem::path& state_path,
 void WriteStamp(const std::filesystem::path& state_path,
                 const std::string& image_name,
                 const std::string& stage,
-                const std::string& fingerprint,
-                const nlohmann::json& statistics) {
-  nlohmann::json stamp = nlohmann::json::object();
-  if (statistics.is_object()) stamp = statistics;
-  stamp["fingerprint"] = fingerprint;
+                const Stamp& stamp) {
+  nlohmann::json json = nlohmann::json::object();
+  if (stamp.statistics.is_object()) json = stamp.statistics;
+  json["version"] = kStampVersion;
+  json["fingerprint"] = stamp.fingerprint;
+  json["files"] = nlohmann::json::object();
+  for (const auto& [kind, file] : stamp.files)
+    json["files"][kind] = ToJson(file);
   // No newline at the end: the closing brace is the last byte, so every proper
   // prefix of a stamp is recognised as damaged.
   WriteFileAtomically(
       StampPath(state_path, image_name, stage),
-      stamp.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+      json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
 void RemoveStamp(const std::filesystem::path& state_path,
@@ -44,10 +71,9 @@ void RemoveStamp(const std::filesystem::path& state_path,
   std::filesystem::remove(StampPath(state_path, image_name, stage), ignored);
 }
 
-std::optional<std::string> ReadStampFingerprint(
-    const std::filesystem::path& state_path,
-    const std::string& image_name,
-    const std::string& stage) {
+std::optional<Stamp> ReadStamp(const std::filesystem::path& state_path,
+                               const std::string& image_name,
+                               const std::string& stage) {
   const std::filesystem::path path = StampPath(state_path, image_name, stage);
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) return std::nullopt;
@@ -58,13 +84,27 @@ std::optional<std::string> ReadStampFingerprint(
   file.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<size_t>(file.gcount()));
 
-  const nlohmann::json stamp =
+  nlohmann::json json =
       nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
-  if (!stamp.is_object()) return std::nullopt;
-  const auto fingerprint = stamp.find("fingerprint");
-  if (fingerprint == stamp.end() || !fingerprint->is_string())
+  if (!json.is_object()) return std::nullopt;
+  const auto version = json.find("version");
+  const auto fingerprint = json.find("fingerprint");
+  const auto files = json.find("files");
+  if (version == json.end() || *version != kStampVersion ||
+      fingerprint == json.end() || !fingerprint->is_string() ||
+      files == json.end() || !files->is_object()) {
     return std::nullopt;
-  return fingerprint->get<std::string>();
+  }
+  Stamp stamp;
+  stamp.fingerprint = fingerprint->get<std::string>();
+  for (const auto& [kind, entry] : files->items()) {
+    const std::optional<PublishedFile> published = FileFrom(entry);
+    if (!published) return std::nullopt;
+    stamp.files[kind] = *published;
+  }
+  for (const char* ours : {"version", "fingerprint", "files"}) json.erase(ours);
+  stamp.statistics = std::move(json);
+  return stamp;
 }
 
 }  // namespace hpm

@@ -1,10 +1,14 @@
-// How resume knows that the maps on disk were made with the present options:
+// How resume knows that the maps on disk were made with the present options
+// from the present inputs, and are still as they were made:
 // stereo/hpm_mvs/stamps/<stage>/<image name>.json, written after the maps,
-// holds the fingerprint they were made with, beside statistics for whoever is
-// curious.
+// holds the fingerprint they were made with, what their files are like, and
+// statistics for whoever is curious.
 #pragma once
 
+#include "colmap_plugin/formats/published_file.h"
+
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 
@@ -12,19 +16,24 @@
 
 namespace hpm {
 
+struct Stamp {
+  std::string fingerprint;
+  std::map<std::string, PublishedFile> files;  // "depth", "normal", "graph"
+  // An object (or null); its members stand beside the others.
+  nlohmann::json statistics;
+};
+
 // Throws Error(kBadInput) for an image name that is not a path inside the
 // folder.
 std::filesystem::path StampPath(const std::filesystem::path& state_path,
                                 const std::string& image_name,
                                 const std::string& stage);
 
-// `statistics` is an object (or null); its members stand beside "fingerprint".
 // Atomic; throws as WriteFileAtomically does.
 void WriteStamp(const std::filesystem::path& state_path,
                 const std::string& image_name,
                 const std::string& stage,
-                const std::string& fingerprint,
-                const nlohmann::json& statistics);
+                const Stamp& stamp);
 
 // Before maps are replaced: from then on they are finished only with a new
 // stamp.
@@ -32,10 +41,10 @@ void RemoveStamp(const std::filesystem::path& state_path,
                  const std::string& image_name,
                  const std::string& stage);
 
-// Nothing if the stamp is absent or damaged: the maps are then made anew.
-std::optional<std::string> ReadStampFingerprint(
-    const std::filesystem::path& state_path,
-    const std::string& image_name,
-    const std::string& stage);
+// Nothing if the stamp is absent, damaged or of another version of this file:
+// the maps are then made anew.
+std::optional<Stamp> ReadStamp(const std::filesystem::path& state_path,
+                               const std::string& image_name,
+                               const std::string& stage);
 
 }  // namespace hpm

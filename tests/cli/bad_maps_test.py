@@ -34,8 +34,7 @@ class BadMaps(CliTest):
         result = self.assert_rerun_completes(workspace)
         self.assertIn("Processing view", result.stdout)
         self.assertEqual(result.stderr.count("damaged"), 1, result.stderr)
-        # Blanks before the header are read over.
-        self.assertIn("15 maps are damaged and computed anew", result.stderr)
+        self.assertIn("16 maps are damaged or were changed by others", result.stderr)
         self.assertIn("depth_maps/view00.png.geometric.bin", result.stderr)
         self.assert_same_maps(map_files(workspace), good)
 

@@ -37,6 +37,7 @@ class ControllerTest : public testing::Test {
         options_,
         [this](LogLevel level, const std::string& line) {
           if (level == LogLevel::kWarning) warnings_.push_back(line);
+          if (on_line_) on_line_(line);
         },
         [this](const ProgressEvent& event) {
           events_.push_back(event);
@@ -86,6 +87,7 @@ class ControllerTest : public testing::Test {
   std::vector<ProgressEvent> events_;
   std::vector<std::string> warnings_;
   std::function<void(const ProgressEvent&)> on_progress_;
+  std::function<void(const std::string&)> on_line_;
 };
 
 TEST_F(ControllerTest, WritesBothStagesOfEveryImage) {
@@ -390,7 +392,7 @@ TEST_F(ControllerTest, NoInnerMapsAreLeftOfAnyRun) {
 TEST_F(ControllerTest, StampsGoBeforeTheirMapsAreReplaced) {
   Run();
   const std::filesystem::path state = scene_.path() / "stereo/hpm_mvs";
-  ASSERT_TRUE(ReadStampFingerprint(state, ViewName(0), "photometric"));
+  ASSERT_TRUE(ReadStamp(state, ViewName(0), "photometric"));
   // A folder in its place: the depth map cannot be published.
   const std::filesystem::path depth = MapPath("depth_maps", 0, "photometric");
   std::filesystem::remove(depth);
@@ -400,7 +402,7 @@ TEST_F(ControllerTest, StampsGoBeforeTheirMapsAreReplaced) {
     Run();
   } catch (const Error&) {
   }
-  EXPECT_FALSE(ReadStampFingerprint(state, ViewName(0), "photometric"));
+  EXPECT_FALSE(ReadStamp(state, ViewName(0), "photometric"));
 }
 
 TEST_F(ControllerTest, ResultsWithoutAFailedSourceAreMadeAgain) {
@@ -416,6 +418,28 @@ TEST_F(ControllerTest, ResultsWithoutAFailedSourceAreMadeAgain) {
   Run();
   on_progress_ = nullptr;
   options_.hpm.overwrite = false;
+  Run();
+  EXPECT_EQ(Depth(0, "geometric"), expected);
+}
+
+// It is another when it is decoded than when the run was planned.
+TEST_F(ControllerTest, ResultsOfAnImageThatChangedMeanwhileAreMadeAgain) {
+  Run();
+  const std::vector<float> expected = Depth(0, "geometric");
+  options_.hpm.overwrite = true;
+  const std::filesystem::path image = scene_.path() / "images" / ViewName(1);
+  const std::string good = ReadFile(image);
+  on_line_ = [&](const std::string& line) {
+    if (line.find(" MB of memory") == std::string::npos) return;
+    WriteFile(image, ReadFile(scene_.path() / "images" / ViewName(2)));
+  };
+  Run();
+  EXPECT_NE(Depth(0, "geometric"), expected);
+  EXPECT_THAT(warnings_,
+              testing::Contains(testing::HasSubstr("changed during this run")));
+  on_line_ = nullptr;
+  options_.hpm.overwrite = false;
+  WriteFile(image, good);
   Run();
   EXPECT_EQ(Depth(0, "geometric"), expected);
 }

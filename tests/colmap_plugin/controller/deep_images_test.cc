@@ -49,8 +49,11 @@ class DeepImagesTest : public testing::Test {
 
   std::optional<GreyRange> Find() {
     log_.clear();
+    const Workspace workspace = scene_.Open();
+    ImageContents contents(workspace);
     return FindDeepRange(
-        scene_.Open(),
+        workspace,
+        &contents,
         [this](LogLevel, const std::string& line) { log_.push_back(line); },
         CancelToken());
   }

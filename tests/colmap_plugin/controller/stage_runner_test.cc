@@ -76,10 +76,12 @@ class StageRunnerTest : public testing::Test {
     options.hpm.method = "nesp";
     options.patch_match.geom_consistency = geometric;
     const Schedule schedule = MakeSchedule(MakeScheduleOptions(options));
-    const StagePlan plan(workspace, problems, schedule, options);
+    ImageContents contents(workspace);
+    CancelToken cancel;
+    const StagePlan plan(
+        workspace, problems, schedule, options, &contents, cancel);
     const LogSink log = [](LogLevel, const std::string&) {};
     InputCache inputs(workspace, 1 << 20, /*max_decodes=*/2);
-    CancelToken cancel;
     const RunLock lock(workspace.StatePath(), log, &cancel);
     StageRunner runner(workspace,
                        problems,

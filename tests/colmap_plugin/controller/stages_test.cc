@@ -4,8 +4,10 @@
 #include "colmap_plugin/formats/consistency_graph.h"
 #include "colmap_plugin/formats/map_file.h"
 #include "colmap_plugin/workspace/stamp.h"
+#include "src/base/error.h"
 #include "tests/colmap_plugin/controller/scene_workspace.h"
 
+#include <chrono>
 #include <fstream>
 #include <functional>
 #include <set>
@@ -45,7 +47,9 @@ class StagePlanTest : public testing::Test {
     return StagePlan(workspace_,
                      problems_,
                      MakeSchedule(MakeScheduleOptions(options_)),
-                     options_);
+                     options_,
+                     &contents_,
+                     cancel_);
   }
 
   // The problems to compute in a stage.
@@ -63,18 +67,19 @@ class StagePlanTest : public testing::Test {
     for (const auto& path : {files.depth, files.normal}) {
       std::filesystem::create_directories(path.parent_path());
     }
+    Stamp stamp = {plan.FingerprintOf(stage, problem), {}, nullptr};
     std::vector<float> data(kWidth * kHeight, 1.0f);
-    WriteMap(files.depth, {kWidth, kHeight, 1, data});
+    stamp.files["depth"] = WriteMap(files.depth, {kWidth, kHeight, 1, data});
     data.resize(3 * data.size(), 0.5f);
-    WriteMap(files.normal, {kWidth, kHeight, 3, data});
+    stamp.files["normal"] = WriteMap(files.normal, {kWidth, kHeight, 3, data});
+    if (options_.patch_match.write_consistency_graph) {
+      stamp.files["graph"] =
+          WriteConsistencyGraph(files.graph, {kWidth, kHeight, {}});
+    }
     const std::string& stage_name = plan.stages()[stage].name;
     const std::string& name =
         workspace_.ImageName(problems_[problem].ref_image);
-    WriteStamp(workspace_.StatePath(),
-               name,
-               stage_name,
-               plan.FingerprintOf(stage, problem),
-               nullptr);
+    WriteStamp(workspace_.StatePath(), name, stage_name, stamp);
   }
 
   void FinishAll(bool inner) {
@@ -109,6 +114,8 @@ class StagePlanTest : public testing::Test {
 
   SceneWorkspace scene_{SmallScene(5, kWidth, kHeight)};
   Workspace workspace_ = scene_.Open();
+  ImageContents contents_{workspace_};
+  CancelToken cancel_;
   ControllerOptions options_;
   std::vector<StereoProblem> problems_;
 };
@@ -218,6 +225,79 @@ TEST_F(StagePlanTest, DamagedMapsAreComputedAgain) {
   EXPECT_FALSE(plan.ReplacesForeignMaps());
 }
 
+// The stamp goes, so that nobody uses the map where it cannot be made again.
+TEST_F(StagePlanTest, AMapWithOtherContentsIsNobodysInput) {
+  FinishAll(false);
+  const std::filesystem::path depth = DepthFile(0, 2);
+  const auto time = std::filesystem::last_write_time(depth);
+  std::vector<float> data(kWidth * kHeight, 1.0f);
+  data.back() = 2;
+  WriteMap(depth, {kWidth, kHeight, 1, data});
+  std::filesystem::last_write_time(depth, time + std::chrono::nanoseconds(1));
+  const StagePlan plan = Plan();
+  EXPECT_THAT(Needed(plan, 0), ElementsAre(2));
+  EXPECT_THAT(Needed(plan, 3), IsEmpty());
+  EXPECT_THAT(plan.damaged_maps(), ElementsAre(depth));
+  EXPECT_FALSE(plan.ReplacesForeignMaps());
+  EXPECT_FALSE(plan.HasCurrentMaps(0, 2));
+  EXPECT_TRUE(plan.HasCurrentMaps(0, 1));
+}
+
+TEST_F(StagePlanTest, IncompleteMapsAreCheckedToo) {
+  FinishAll(false);
+  const StagePlan before = Plan();
+  for (const int p : {1, 2}) {
+    const std::string& name = workspace_.ImageName(p);
+    std::optional<Stamp> stamp =
+        ReadStamp(workspace_.StatePath(), name, "photometric");
+    ASSERT_TRUE(stamp);
+    stamp->fingerprint = before.IncompleteFingerprintOf(0, p);
+    WriteStamp(workspace_.StatePath(), name, "photometric", *stamp);
+  }
+  std::filesystem::resize_file(DepthFile(0, 2), 40);
+  const StagePlan plan = Plan();
+  EXPECT_THAT(Needed(plan, 0), ElementsAre(1, 2));
+  EXPECT_TRUE(plan.HasCurrentMaps(0, 1));
+  EXPECT_FALSE(plan.HasCurrentMaps(0, 2));
+}
+
+TEST_F(StagePlanTest, TouchedMapsAreKeptAndStampedWithTheirNewTime) {
+  FinishAll(false);
+  const std::filesystem::path depth = DepthFile(3, 2);
+  std::filesystem::last_write_time(
+      depth, std::filesystem::last_write_time(depth) + std::chrono::hours(1));
+  for (int s = 0; s < 4; ++s) EXPECT_THAT(Needed(Plan(), s), IsEmpty());
+  const std::optional<Stamp> stamp =
+      ReadStamp(workspace_.StatePath(), workspace_.ImageName(2), "geometric");
+  ASSERT_TRUE(stamp);
+  EXPECT_EQ(stamp->files.at("depth").state, StateOf(depth));
+}
+
+TEST_F(StagePlanTest, ComparingMapsHearsCancel) {
+  FinishAll(false);
+  for (int p = 0; p < 5; ++p)
+    std::filesystem::last_write_time(DepthFile(0, p), {});
+  cancel_.Cancel();
+  EXPECT_THROW(Plan(), Error);
+}
+
+TEST_F(StagePlanTest, AnImageThatBecameAnotherOfTheSameLengthChangesAll) {
+  const std::filesystem::path path = workspace_.ImagePath(2);
+  EXPECT_EQ(ChangedBy([&] {
+              std::string bytes = ReadFile(path);
+              bytes.back() = static_cast<char>(bytes.back() + 1);
+              WriteFile(path, bytes);
+              contents_ = ImageContents(workspace_);
+            }),
+            (std::set<int>{0, 1, 2, 3}));
+  EXPECT_TRUE(Plan().HasSameImages(2));
+  EXPECT_TRUE(Plan().HasSameImages(4));
+  WriteFile(path, "x");
+  EXPECT_FALSE(Plan().HasSameImages(2));
+  EXPECT_FALSE(Plan().HasSameImages(1));  // a source
+  EXPECT_TRUE(Plan().HasSameImages(4));
+}
+
 TEST_F(StagePlanTest, MapsWithoutTheirStampAreForeign) {
   FinishAll(false);
   std::filesystem::remove_all(workspace_.StatePath() / "stamps");
@@ -277,6 +357,7 @@ TEST_F(StagePlanTest, EachOptionChangesTheFingerprintsItConcerns) {
   EXPECT_EQ(ChangedBy([&] { hpm.previews = true; }), Changed());
   EXPECT_EQ(ChangedBy([&] {
               std::ofstream(workspace_.ImagePath(2), std::ios::app) << "x";
+              contents_ = ImageContents(workspace_);
             }),
             all);
 }
@@ -294,13 +375,10 @@ TEST_F(StagePlanTest, MissingConsistencyGraphsAreMadeWhenAskedFor) {
   options_.patch_match.write_consistency_graph = true;
   EXPECT_THAT(Needed(Plan(), 3), ElementsAre(0, 1, 2, 3, 4));
   const StagePlan plan = Plan();
-  for (const int s : {0, 3}) {
-    EXPECT_TRUE(plan.WritesGraph(s, 0));
-    for (int p = 0; p < 5; ++p) {
-      WriteConsistencyGraph(plan.Files(s, p).graph, {kWidth, kHeight, {}});
-    }
-  }
+  EXPECT_TRUE(plan.WritesGraph(0, 0));
+  EXPECT_TRUE(plan.WritesGraph(3, 0));
   EXPECT_FALSE(plan.WritesGraph(1, 0));
+  FinishAll(false);
   EXPECT_THAT(Needed(Plan(), 3), IsEmpty());
 }
 

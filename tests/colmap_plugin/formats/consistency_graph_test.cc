@@ -1,5 +1,6 @@
 #include "colmap_plugin/formats/consistency_graph.h"
 
+#include "colmap_plugin/formats/content_hash.h"
 #include "tests/colmap_plugin/formats/test_files.h"
 
 namespace hpm {
@@ -16,7 +17,10 @@ std::string GraphBytes(std::string_view header,
 TEST(ConsistencyGraph, WritesGroupsByteForByteAndReadsThemBack) {
   const ScratchFolder folder;
   const ConsistencyGraph graph{4, 3, {2, 0, 2, 7, 9, 3, 2, 1, 0}};
-  WriteConsistencyGraph(folder / "g.bin", graph);
+  const PublishedFile published =
+      WriteConsistencyGraph(folder / "g.bin", graph);
+  EXPECT_EQ(published.state, StateOf(folder / "g.bin"));
+  EXPECT_EQ(published.checksum, HashFile(folder / "g.bin", CancelToken()));
   EXPECT_EQ(ReadFile(folder / "g.bin"), GraphBytes("4&3&1&", graph.data));
   EXPECT_EQ(ReadConsistencyGraph(folder / "g.bin").data, graph.data);
 }

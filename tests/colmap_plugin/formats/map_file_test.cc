@@ -38,6 +38,51 @@ TEST(MapFile, ReadsWhatItWroteAndCreatesFolders) {
   EXPECT_EQ(folder.CountFiles(), 1u);
 }
 
+TEST(MapFile, ChecksumDoesNotDependOnTheOrderOfTheRows) {
+  const ScratchFolder folder;
+  // Several parts of the reader.
+  const int width = 7001, height = 40;
+  std::vector<float> values(3 * width * height);
+  for (size_t i = 0; i < values.size(); ++i)
+    values[i] = static_cast<float>(i % 1000003);
+  const PublishedFile map =
+      WriteMap(folder / "a.bin", {width, height, 3, values});
+  EXPECT_EQ(map.state, StateOf(folder / "a.bin"));
+  EXPECT_EQ(MapReader(folder / "a.bin").Checksum(CancelToken()), map.checksum);
+
+  MapWriter writer(folder / "b.bin", {width, height, 3});
+  for (int row = height - 1; row >= 0; --row) {
+    for (const int channel : {1, 0, 2})
+      writer.WriteRows(
+          channel, row, 1, &values[(channel * height + row) * width]);
+  }
+  EXPECT_EQ(writer.Commit().checksum, map.checksum);
+  EXPECT_EQ(ReadFile(folder / "b.bin"), ReadFile(folder / "a.bin"));
+}
+
+TEST(MapFile, ChecksumChangesWithEveryBit) {
+  const ScratchFolder folder;
+  const auto path = folder / "m.bin";
+  const std::string checksum = WriteMap(path, SmallNormalMap()).checksum;
+  const std::string bytes = ReadFile(path);
+  const size_t header_bytes = std::strlen("2&1&3&");
+  for (size_t bit = 8 * header_bytes; bit < 8 * bytes.size(); ++bit) {
+    std::string other = bytes;
+    other[bit / 8] = static_cast<char>(other[bit / 8] ^ (1 << bit % 8));
+    WriteFile(path, other);
+    EXPECT_NE(MapReader(path).Checksum(CancelToken()), checksum) << bit;
+  }
+  // Another size of the same length, and rows in another order.
+  for (const std::string& other :
+       {"1&2&3&" + bytes.substr(header_bytes),
+        "2&3&1&" + bytes.substr(header_bytes),
+        bytes.substr(0, header_bytes) + bytes.substr(header_bytes + 8, 8) +
+            bytes.substr(header_bytes, 8) + bytes.substr(header_bytes + 16)}) {
+    WriteFile(path, other);
+    EXPECT_NE(MapReader(path).Checksum(CancelToken()), checksum);
+  }
+}
+
 TEST(MapFile, HeaderDoesNotDependOnTheLocale) {
   const ScratchFolder folder;
   const CommaLocale locale;

@@ -1,0 +1,39 @@
+#include "colmap_plugin/controller/image_contents.h"
+
+#include "colmap_plugin/formats/content_hash.h"
+#include "src/base/error.h"
+
+#include <tbb/parallel_for.h>
+
+namespace hpm {
+
+ImageContents::ImageContents(const Workspace& workspace)
+    : workspace_(&workspace), contents_(workspace.num_images()) {}
+
+void ImageContents::Read(const std::vector<int>& images,
+                         const CancelToken& cancel) {
+  std::vector<int> unknown;
+  for (const int image : images) {
+    if (contents_[image].is_known || !workspace_->has_picture(image)) continue;
+    contents_[image].is_known = true;
+    unknown.push_back(image);
+  }
+  tbb::parallel_for(size_t{0}, unknown.size(), [&](size_t i) {
+    Content* content = &contents_[unknown[i]];
+    const auto& path = workspace_->ImagePath(unknown[i]);
+    content->state = StateOf(path);
+    try {
+      content->hash = HashFile(path, cancel);
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::kBadInput) throw;
+    }
+  });
+}
+
+bool ImageContents::IsUnchanged(int image) const {
+  const Content& content = contents_[image];
+  return !content.hash.empty() && content.state &&
+         StateOf(workspace_->ImagePath(image)) == content.state;
+}
+
+}  // namespace hpm
