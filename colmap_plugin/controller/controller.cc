@@ -118,11 +118,16 @@ void WarnOfChangedImages(const Workspace& workspace,
                          const std::vector<StereoProblem>& problems,
                          const ImageContents& contents,
                          const LogSink& log) {
-  ImageFault changed;
+  std::set<int> images;
   for (const StereoProblem& problem : problems) {
-    if (CanBeComputed(workspace, problem) &&
-        !contents.IsUnchanged(problem.ref_image))
-      changed.Add(workspace.ImagePath(problem.ref_image).string());
+    if (!CanBeComputed(workspace, problem)) continue;
+    images.insert(problem.ref_image);
+    images.insert(problem.src_images.begin(), problem.src_images.end());
+  }
+  ImageFault changed;
+  for (const int image : images) {
+    if (!contents.IsUnchanged(image))
+      changed.Add(workspace.ImagePath(image).string());
   }
   if (changed.num() == 0) return;
   log(LogLevel::kWarning,

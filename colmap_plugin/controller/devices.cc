@@ -88,8 +88,7 @@ std::vector<std::unique_ptr<Backend>> OpenGpus(const ControllerOptions& options,
                                                int num_threads,
                                                const GpuAccess& gpus,
                                                const LogSink& log) {
-  std::vector<std::unique_ptr<Backend>> backends;
-  if (options.hpm.device == "cpu") return backends;
+  if (options.hpm.device == "cpu") return {};
   const bool must = options.hpm.device == "cuda";
   std::string why_none;
   const std::vector<CudaDevice> devices = gpus.find(&why_none);
@@ -100,19 +99,22 @@ std::vector<std::unique_ptr<Backend>> OpenGpus(const ControllerOptions& options,
                       "; set --Hpm.device cpu");
     }
     log(LogLevel::kInfo, "No GPU is used (" + why_none + ")");
-    return backends;
+    return {};
   }
   int num_indices = 0;
   for (const CudaDevice& device : devices) {
     num_indices = std::max(num_indices, device.index + 1);
   }
+  const std::vector<int> indices =
+      ParseGpuIndex(options.patch_match.gpu_index, num_indices);
   std::map<int, int> num_entries;
-  for (const int index :
-       ParseGpuIndex(options.patch_match.gpu_index, num_indices)) {
-    ++num_entries[index];
-  }
-  const int most = options.hpm.gpu_images > 0 ? options.hpm.gpu_images
-                                              : MostImagesPerEntry(num_threads);
+  for (const int index : indices) ++num_entries[index];
+  const int most =
+      options.hpm.gpu_images > 0
+          ? options.hpm.gpu_images
+          : MostImagesPerEntry(num_threads / static_cast<int>(indices.size()));
+  // With the number of the image on its card.
+  std::vector<std::pair<int, std::unique_ptr<Backend>>> opened;
   for (const auto& [index, entries] : num_entries) {
     const CudaDevice* device = FindDevice(devices, index);
     try {
@@ -138,16 +140,22 @@ std::vector<std::unique_ptr<Backend>> OpenGpus(const ControllerOptions& options,
                     20,
                 device->free_bytes >> 20));
       }
-      backends.push_back(OpenTested(gpus, *device));
-      for (int i = 1; i < fit; ++i) backends.push_back(gpus.open(index));
+      opened.emplace_back(0, OpenTested(gpus, *device));
+      for (int i = 1; i < fit; ++i) opened.emplace_back(i, gpus.open(index));
     } catch (const Error& error) {
       if (must) throw;
       log(LogLevel::kWarning, error.what());
     }
   }
-  if (static_cast<int>(backends.size()) > std::max(num_images, 1)) {
-    backends.resize(std::max(num_images, 1));
-  }
+  // In turn, so that fewer images are shared out among the cards.
+  std::stable_sort(
+      opened.begin(), opened.end(), [](const auto& a, const auto& b) {
+        return a.first < b.first;
+      });
+  if (static_cast<int>(opened.size()) > std::max(num_images, 1))
+    opened.resize(std::max(num_images, 1));
+  std::vector<std::unique_ptr<Backend>> backends;
+  for (auto& [number, backend] : opened) backends.push_back(std::move(backend));
   return backends;
 }
 

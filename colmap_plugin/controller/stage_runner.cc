@@ -142,7 +142,7 @@ void StageRunner::AddDepths(int stage,
     const bool has_maps = views->srcs[j].inverse_depth != nullptr;
     if (!has_maps) ++num_without_maps_;
     const int src = src_images_[j];
-    if (plan_.HasProblem(src) &&
+    if (plan_.GetsMaps(src) &&
         (!has_maps || !plan_.HasCompleteMaps(stage - 1, src))) {
       misses_maps_ = true;
     }

@@ -298,6 +298,11 @@ bool StagePlan::HasSameImages(int p) const {
          });
 }
 
+bool StagePlan::GetsMaps(int image) const {
+  const int problem = problem_of_image_[image];
+  return problem >= 0 && CanBeComputed(workspace_, problems_[problem]);
+}
+
 bool StagePlan::HasCompleteMaps(int s, int image) const {
   const int p = problem_of_image_[image];
   return p >= 0 && FingerprintOnDisk(s, image) == fingerprints_[s][p];

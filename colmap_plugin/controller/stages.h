@@ -92,7 +92,8 @@ class StagePlan {
   bool HasCompleteMaps(int s, int image) const;
   // The same, or made without the maps of some source that failed.
   bool HasCurrentMaps(int s, int image) const;
-  bool HasProblem(int image) const { return problem_of_image_[image] >= 0; }
+  // Whether a run makes maps of the image, unless something fails.
+  bool GetsMaps(int image) const;
   // The image's camera at the scale of the stage, its own centre the origin.
   Camera CameraOf(int s, int image) const {
     return LevelCamera(workspace_.camera(image), stages_[s].spec.level);

@@ -177,7 +177,7 @@ std::vector<OptionSpec> MakeTable() {
 
       // Fine tuning, and what has no meaning in this method.
       Hpm(kExpert, "gpu_images", &H::gpu_images, Between(-1, kMaxGpuImages),
-          "Images in flight per entry of gpu_index; -1 or 0: half as many as threads, 3 to 8, or fewer if memory is short"),
+          "Images in flight per entry of gpu_index; -1 or 0: half as many as threads, shared by the entries, 3 to 8 each, or fewer if memory is short"),
       Hpm(kExpert, "cpu_target", &H::cpu_target, Anything(),
           "SIMD instructions to use: auto, scalar, or a target of this machine"),
       Hpm(kExpert, "num_iterations", &H::num_iterations, Between(-1, kMaxIterations),

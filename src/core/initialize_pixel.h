@@ -122,7 +122,8 @@ HPM_HD void InitializePixel(const VisitParams& params,
   const int at = row * state.width + col;
   const Vec3f ray =
       RayAt(params.ref, static_cast<float>(col), static_cast<float>(row));
-  Plane plane = state.planes[at];
+  // What a random start does not read need not be there.
+  Plane plane = start == StartFrom::kRandom ? Plane{} : state.planes[at];
   if (!StartsAt(start, plane)) return;
   const bool has_plane = plane.distance > 0;
   if (start == StartFrom::kPrior && state.priors != nullptr &&

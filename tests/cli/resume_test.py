@@ -102,6 +102,17 @@ class Images(ResumeTest):
                 self.run_whole(workspace)
                 self.assert_same_maps(map_files(workspace), map_files(straight))
 
+    def test_a_source_that_can_never_have_maps_is_not_waited_for(self):
+        workspace, versions = self.scene()
+        broken, others = NAMES[2], [name for name in NAMES if name != NAMES[2]]
+        (workspace / "images" / broken).write_bytes(versions[broken]["no picture"])
+        # The second image has no other source, so that it gets no maps either.
+        lines = [f"{others[0]}\n{', '.join(others[1:])}\n", f"{others[1]}\n{broken}\n",
+                 f"{others[2]}\n{others[0]}, {others[1]}\n"]
+        (workspace / "stereo/patch-match.cfg").write_text("".join(lines))
+        self.run_whole(workspace, code=4)
+        self.assertIn("0 computed, 2 kept", self.run_whole(workspace, code=4).stdout)
+
     def test_an_image_that_changes_during_the_run_is_told_and_made_good(self):
         straight, versions = self.scene()
         slow = [o for o in OPTIONS if "num_iterations" not in o] + ["--Hpm.num_iterations=100"]

@@ -159,11 +159,13 @@ TEST_F(DevicesTest, EveryEntryGetsItsImagesInFlight) {
   AddGpu(1 << 16);
   EXPECT_THAT(
       Open("auto", "-1"),
-      ElementsAre("gpu 0", "gpu 0", "gpu 0", "gpu 1", "gpu 1", "gpu 1"));
+      ElementsAre("gpu 0", "gpu 1", "gpu 0", "gpu 1", "gpu 0", "gpu 1"));
   EXPECT_EQ(Open("auto", "1").size(), 3u);
   EXPECT_EQ(Open("auto", "1,1").size(), 6u);
   EXPECT_EQ(Open("auto", "-1", 1).size(), 1u);
+  EXPECT_THAT(Open("auto", "-1", 2), ElementsAre("gpu 0", "gpu 1"));
   EXPECT_EQ(Open("auto", "0", 100, 12).size(), 6u);
+  EXPECT_EQ(Open("auto", "-1", 100, 16).size(), 8u);
   EXPECT_EQ(Open("auto", "0", 100, 96).size(), 8u);
   EXPECT_TRUE(lines_.empty());
 }
