@@ -55,12 +55,12 @@ InverseDepthMap InverseDepthMap::Of(const float* values, size_t count) {
                         // Not below one step, which would read as "no depth".
                         // To the nearest step, which is what cutting off after
                         // adding a half gives from one on.
-                        const auto steps = static_cast<uint32_t>(
+                        const auto whole = static_cast<uint32_t>(
                             std::clamp(values[i] / step, 1.0, kNumSteps) + 0.5);
                         uint8_t* bytes = &map.steps[kInverseDepthBytes * i];
-                        bytes[0] = static_cast<uint8_t>(steps);
-                        bytes[1] = static_cast<uint8_t>(steps >> 8);
-                        bytes[2] = static_cast<uint8_t>(steps >> 16);
+                        bytes[0] = static_cast<uint8_t>(whole);
+                        bytes[1] = static_cast<uint8_t>(whole >> 8);
+                        bytes[2] = static_cast<uint8_t>(whole >> 16);
                       }
                     });
   return map;
