@@ -97,7 +97,7 @@ std::string Reason(FilterCriterion criterion,
     case FilterCriterion::kUnexplained:
       return "nothing but chance decides there, as in a sky: no texture, no "
              "plane that explains it, and many sources disagree; "
-             "--PatchMatchStereo.filter 0 keeps them";
+             "--Hpm.filter_min_agreement 0 keeps them";
     case FilterCriterion::kRange:
       break;
   }

@@ -10,10 +10,12 @@ namespace hpm {
 NeededViews::NeededViews(const ViewSet& views,
                          const HypothesisMap& map,
                          const FilterParams& filter,
+                         double min_agreement,
                          bool geometric)
     : views_(views),
       map_(map),
       min_num_consistent_(filter.min_num_consistent),
+      min_agreement_(min_agreement),
       max_cos_(std::cos(filter.min_triangulation_angle)),
       geometric_(geometric) {
   for (const View& src : views.srcs) {
@@ -25,7 +27,9 @@ NeededViews::NeededViews(const ViewSet& views,
 int NeededViews::At(size_t at) const {
   if (map_.unexplained.empty() || !map_.unexplained[at])
     return min_num_consistent_;
-  return std::max(min_num_consistent_, (2 * CountSeeing(at) + 2) / 3);
+  return std::max(
+      min_num_consistent_,
+      static_cast<int>(std::ceil(min_agreement_ * CountSeeing(at))));
 }
 
 int NeededViews::CountSeeing(size_t at) const {

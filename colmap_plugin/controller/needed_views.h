@@ -11,15 +11,17 @@
 namespace hpm {
 
 // The minimum of COLMAP's filter; where the map is unexplained
-// (HypothesisMap::unexplained) two thirds of the sources that see the plane, if
-// that is more. In front of a sky all views find what hangs over the roofs, but
-// not the same everywhere: half of them agree where nearly all agree on a wall.
+// (HypothesisMap::unexplained) a share of the sources that see the plane, two
+// thirds unless told otherwise, if that is more. In front of a sky all views
+// find what hangs over the roofs, but not the same everywhere: half of them
+// agree where nearly all agree on a wall.
 class NeededViews {
  public:
   // Keeps references to `views` and `map`.
   NeededViews(const ViewSet& views,
               const HypothesisMap& map,
               const FilterParams& filter,
+              double min_agreement,
               bool geometric);
 
   // Of pixel row * width + col.
@@ -34,6 +36,7 @@ class NeededViews {
   const ViewSet& views_;
   const HypothesisMap& map_;
   const int min_num_consistent_;
+  const double min_agreement_;
   const float max_cos_;
   const bool geometric_;
   std::vector<ViewWarp> warps_;

@@ -196,7 +196,8 @@ void StageRunner::Publish(int stage,
         num_without_maps_ < static_cast<int>(views.srcs.size());
     consistent = backend_->ConsistentViews(map, params, geometric, control);
     keep.resize(consistent.size());
-    const NeededViews needed(views, map, params, geometric);
+    const NeededViews needed(
+        views, map, params, options_.hpm.filter_min_agreement, geometric);
     for (size_t i = 0; i < keep.size(); ++i) {
       const int num = __builtin_popcount(consistent[i]);
       keep[i] = num >= params.min_num_consistent && num >= needed.At(i);

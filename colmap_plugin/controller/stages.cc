@@ -94,9 +94,12 @@ void AddMethod(const MethodParams& params, Fingerprint* hash) {
   }
 }
 
-void AddFilter(const PatchMatchStereoOptions& options, Fingerprint* hash) {
+void AddFilter(const PatchMatchStereoOptions& options,
+               double min_agreement,
+               Fingerprint* hash) {
   hash->AddInt(options.filter);
   if (!options.filter) return;
+  hash->AddDouble(min_agreement);
   hash->AddDouble(options.filter_min_ncc)
       .AddDouble(options.filter_min_triangulation_angle);
   hash->AddInt(options.filter_min_num_consistent);
@@ -139,7 +142,7 @@ std::string OwnFingerprint(const Workspace& workspace,
     hash.AddDouble(params.region_max_gradient);
   }
   if (stage.is_final) {
-    AddFilter(options.patch_match, &hash);
+    AddFilter(options.patch_match, options.hpm.filter_min_agreement, &hash);
     hash.AddDouble(problem.published.min).AddDouble(problem.published.max);
   }
   return hash.Hex();

@@ -200,6 +200,9 @@ std::vector<OptionSpec> MakeTable() {
           "Cap of the reprojection error in the geometric term, in pixels"),
       Hpm(kExpert, "num_levels", &H::num_levels, Between(-1, 8),
           "Levels of the prior hierarchy or image pyramid; -1 or 0: by method and image size"),
+      Hpm(kExpert, "filter_min_agreement", &H::filter_min_agreement, Between(0, 1),
+          "Share of the source images that see a plain surface which nothing explains, as a sky, that must confirm it "
+          "(hpm_plus); 0: filter_min_num_consistent alone, keeps more of walls and of skies"),
       Stereo(kExpert, "allow_missing_files", &P::allow_missing_files, Anything(),
              "Leave out source images whose files are missing",
              "source images without a file are left out in any case, with a warning"),

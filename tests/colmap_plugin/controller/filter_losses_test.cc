@@ -61,7 +61,7 @@ class FilterLossesTest : public testing::Test {
   }
 
   FilterLosses Count() const {
-    const NeededViews needed(views_, map_, filter_, geometric_);
+    const NeededViews needed(views_, map_, filter_, min_agreement_, geometric_);
     std::vector<bool> keep;
     for (size_t i = 0; i < consistent_.size(); ++i)
       keep.push_back(__builtin_popcount(consistent_[i]) >= needed.At(i));
@@ -73,6 +73,7 @@ class FilterLossesTest : public testing::Test {
   HypothesisMap map_;
   std::vector<uint32_t> consistent_;
   FilterParams filter_ = {0.1f, 3 * kDegree, 1, 2};
+  double min_agreement_ = 0.66;
   bool geometric_ = true;
 };
 
@@ -125,6 +126,9 @@ TEST_F(FilterLossesTest, UnexplainedPixelsNeedMostOfThoseThatSeeThem) {
   ASSERT_EQ(losses.count(FilterCriterion::kUnexplained), 1u);
   EXPECT_GT(losses.at(FilterCriterion::kUnexplained), 0.7);
   std::fill(consistent_.begin(), consistent_.end(), 0b0111);
+  EXPECT_THAT(Count(), IsEmpty());
+  std::fill(consistent_.begin(), consistent_.end(), 0b0011);
+  min_agreement_ = 0;
   EXPECT_THAT(Count(), IsEmpty());
 }
 

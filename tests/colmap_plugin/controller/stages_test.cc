@@ -341,6 +341,7 @@ TEST_F(StagePlanTest, EachOptionChangesTheFingerprintsItConcerns) {
   EXPECT_EQ(ChangedBy([&] { colmap.sigma_spatial = 4; }), all);
   EXPECT_EQ(ChangedBy([&] { colmap.num_samples = 30; }), all);
   EXPECT_EQ(ChangedBy([&] { colmap.filter = false; }), final);
+  EXPECT_EQ(ChangedBy([&] { hpm.filter_min_agreement = 0; }), final);
   EXPECT_EQ(ChangedBy([&] { colmap.filter_min_num_consistent = 1; }), final);
   EXPECT_EQ(ChangedBy([&] { colmap.filter_min_triangulation_angle = 1; }),
             final);

@@ -136,12 +136,13 @@ TEST(OptionTableTest, EveryMemberOfHpmOptionsIsAnOption) {
                geom_weight,
                geom_max_error,
                num_levels,
+               filter_min_agreement,
                previews,
                overwrite] = HpmOptions();
   (void)method, (void)device, (void)gpu_images, (void)cpu_target,
       (void)num_iterations, (void)num_geom_iterations;
   (void)num_geom_passes, (void)geom_weight, (void)geom_max_error,
-      (void)num_levels;
+      (void)num_levels, (void)filter_min_agreement;
   (void)previews, (void)overwrite;
   (void)num_fine_iterations, (void)num_fine_geom_passes;
   (void)quality, (void)max_views, (void)weak_gradient;
@@ -160,6 +161,7 @@ TEST(OptionTableTest, EveryMemberOfHpmOptionsIsAnOption) {
                            "geom_weight",
                            "geom_max_error",
                            "num_levels",
+                           "filter_min_agreement",
                            "previews",
                            "overwrite"}) {
     EXPECT_NE(FindOption(std::string("Hpm.") + name), nullptr) << name;
@@ -276,6 +278,7 @@ const std::vector<Values>& ValueTable() {
       {"Hpm.weak_gradient", {"0", "2.5"}, {"-1"}, ">= 0"},
       {"Hpm.geom_max_error", {"0", "5"}, {"-1"}, ">= 0"},
       {"Hpm.num_levels", {"-1", "8"}, {"-2", "9", "1.5"}, "-1 to 8"},
+      {"Hpm.filter_min_agreement", {"0", "1"}, {"-0.1", "1.1"}, "0 to 1"},
       bools("Hpm.previews"),
       bools("Hpm.overwrite"),
   };
