@@ -2,7 +2,6 @@
 #include "cuda/cuda_backend.h"
 #include "cuda/cuda_devices.h"
 #include "cuda/gpu_error.h"
-#include "cuda/lane_cost.h"
 #include "cuda/self_test.h"
 #include "src/core/sampling_pattern.h"
 #include "src/cpu/cpu_backend.h"

@@ -2,6 +2,7 @@
 
 #include "cuda/lane_cost.h"
 #include "cuda/texel_image.h"
+#include "tests/cuda/core_cost.h"
 
 namespace hpm {
 namespace {
