@@ -13,7 +13,7 @@ enum class FilterCriterion {
   kGeometry,       // the source found another depth, or none
   kCorrelation,    // the images differ
   kNumConsistent,  // some sources confirm the pixel, too few
-  // Enough do, but not two thirds of those that see it, in a region without
+  // Enough do, but not half of those that see it, in a region without
   // texture that no plane explains.
   kUnexplained,
   kRange,  // confirmed, but outside the depth range given by hand

@@ -6,6 +6,24 @@
 #include <cmath>
 
 namespace hpm {
+namespace {
+
+// What a source finds nearer than this share of the depth of a plane hides it;
+// what is left is noise and the plane's own error.
+constexpr float kHidden = 0.8f;
+
+bool IsHidden(const View& src, float u, float v, float z) {
+  if (src.inverse_depth == nullptr) return false;
+  return kHidden * z *
+             InterpolateInverseDepth(src.inverse_depth->View(),
+                                     src.camera.width,
+                                     src.camera.height,
+                                     u,
+                                     v) >
+         1;
+}
+
+}  // namespace
 
 NeededViews::NeededViews(const ViewSet& views,
                          const HypothesisMap& map,
@@ -39,13 +57,16 @@ int NeededViews::CountSeeing(size_t at) const {
   const Vec3f ray = RayAt(views_.ref.camera, x, y);
   const Vec3f point = (-plane.distance / Dot(plane.normal, ray)) * ray;
   const PlaneSlope slope = SlopeOf(views_.ref.camera, plane);
+  const Vec3f world = WorldFromCam(views_.ref.camera, point);
   int count = 0;
   for (size_t j = 0; j < warps_.size(); ++j) {
-    if (geometric_ && views_.srcs[j].inverse_depth == nullptr) continue;
+    const View& src = views_.srcs[j];
+    if (geometric_ && src.inverse_depth == nullptr) continue;
     if (SightOf(point, plane.normal, centers_[j], max_cos_) != Sight::kFront)
       continue;
     float u, v;
-    count += IsSeen(warps_[j], slope, x, y, &u, &v);
+    if (!IsSeen(warps_[j], slope, x, y, &u, &v)) continue;
+    count += !IsHidden(src, u, v, CamFromWorld(src.camera, world).z);
   }
   return count;
 }

@@ -11,10 +11,10 @@
 namespace hpm {
 
 // The minimum of COLMAP's filter; where the map is unexplained
-// (HypothesisMap::unexplained) a share of the sources that see the plane, two
-// thirds unless told otherwise, if that is more. In front of a sky all views
-// find what hangs over the roofs, but not the same everywhere: half of them
-// agree where nearly all agree on a wall.
+// (HypothesisMap::unexplained) a share of the sources that see the plane, half
+// unless told otherwise, if that is more. In front of a sky all views
+// find what hangs over the roofs, but not the same everywhere, so that fewer
+// of them agree than on a wall.
 class NeededViews {
  public:
   // Keeps references to `views` and `map`.
@@ -29,8 +29,8 @@ class NeededViews {
 
  private:
   // Sources into whose image the pixel falls, from whose side its plane is
-  // seen, and at a sufficient angle; after geometric passes those with a depth
-  // map: no other can confirm it.
+  // seen, at a sufficient angle and with nothing clearly nearer in between;
+  // after geometric passes those with a depth map: no other can confirm it.
   int CountSeeing(size_t at) const;
 
   const ViewSet& views_;

@@ -58,7 +58,7 @@ struct HpmOptions {
   double geom_weight = 0.1;     // lambda of the geometric term
   double geom_max_error = 5;    // pixels, cap of the geometric term
   int num_levels = -1;  // of the hierarchy; -1: by method and image size
-  double filter_min_agreement = 0.66;  // see needed_views.h
+  double filter_min_agreement = 0.5;  // see needed_views.h
   bool previews = false;   // colour pictures of the maps in stereo/previews
   bool overwrite = false;  // recompute maps that are complete
 };

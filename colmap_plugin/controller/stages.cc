@@ -17,7 +17,7 @@ namespace hpm {
 namespace {
 
 // Raise when the same options give other maps.
-constexpr int kAlgorithmVersion = 9;
+constexpr int kAlgorithmVersion = 10;
 
 constexpr const char* kLevelPrefix = "level_";
 constexpr const char* kGeometricPrefix = "geometric_";

@@ -132,6 +132,19 @@ TEST_F(FilterLossesTest, UnexplainedPixelsNeedMostOfThoseThatSeeThem) {
   EXPECT_THAT(Count(), IsEmpty());
 }
 
+// Walls behind furniture would go otherwise.
+TEST_F(FilterLossesTest, SourcesWithSomethingInBetweenAreNotNeeded) {
+  for (const float x : {0.3f, -0.3f}) AddSource(x, kDepth);
+  for (const float x : {0.4f, -0.4f}) AddSource(x, 0.7f * kDepth);
+  std::fill(consistent_.begin(), consistent_.end(), 0b0011);
+  map_.unexplained.assign(map_.planes.size(), true);
+  EXPECT_THAT(Count(), IsEmpty());
+  // A little nearer is another opinion of the same surface.
+  views_.srcs.resize(2);
+  for (const float x : {0.4f, -0.4f}) AddSource(x, 0.9f * kDepth);
+  EXPECT_EQ(Count().count(FilterCriterion::kUnexplained), 1u);
+}
+
 // Else a run in which the maps of many sources failed would lose them all.
 TEST_F(FilterLossesTest, SourcesWithoutMapsAreNotNeeded) {
   for (const float x : {0.3f, -0.3f}) AddSource(x, kDepth);
