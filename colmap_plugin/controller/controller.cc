@@ -4,13 +4,13 @@
 #include "colmap_plugin/controller/deep_images.h"
 #include "colmap_plugin/controller/devices.h"
 #include "colmap_plugin/controller/image_contents.h"
-#include "colmap_plugin/controller/method_options.h"
 #include "colmap_plugin/controller/run_budget.h"
 #include "colmap_plugin/controller/run_statistics.h"
 #include "colmap_plugin/controller/stage_runner.h"
 #include "colmap_plugin/controller/thread_supply.h"
 #include "colmap_plugin/controller/worker_pool.h"
 #include "colmap_plugin/formats/atomic_file.h"
+#include "colmap_plugin/options/method_options.h"
 #include "colmap_plugin/workspace/far_origin.h"
 #include "colmap_plugin/workspace/image_files.h"
 #include "colmap_plugin/workspace/output_check.h"
@@ -33,15 +33,6 @@
 
 namespace hpm {
 namespace {
-
-ProblemOptions MakeProblemOptions(const ControllerOptions& options) {
-  ProblemOptions result;
-  result.config_path = options.config_path;
-  result.depth_min = options.patch_match.depth_min;
-  result.depth_max = options.patch_match.depth_max;
-  result.min_triangulation_angle = options.patch_match.min_triangulation_angle;
-  return result;
-}
 
 // The largest image of the workspace decides for all, so that all have the same
 // stages, whichever of them this run computes.
@@ -156,9 +147,7 @@ PatchMatchController::PatchMatchController(const ControllerOptions& options,
     : options_(options),
       log_(std::move(log)),
       progress_(std::move(progress)),
-      cancel_(cancel) {
-  options_.workspace.max_image_size = options_.patch_match.max_image_size;
-}
+      cancel_(cancel) {}
 
 RunSummary PatchMatchController::Run() {
   const auto start = std::chrono::steady_clock::now();
@@ -177,7 +166,7 @@ RunSummary PatchMatchController::Run() {
   workspace.StretchDeepImages(FindDeepRange(workspace, &contents, log_, stop));
 
   log_(LogLevel::kInfo, "Reading configuration...");
-  const ProblemOptions problem_options = MakeProblemOptions(options_);
+  const ProblemOptions& problem_options = options_.problems;
   std::vector<StereoProblem> problems =
       ReadProblems(workspace, problem_options, log_);
   const size_t num_references = problems.size();
@@ -309,7 +298,7 @@ RunSummary PatchMatchController::Run() {
   for (size_t p = 0; p < num_references; ++p)
     names.push_back(workspace.ImageName(problems[p].ref_image));
   for (const std::string& line :
-       FilterWarnings(statistics.losses(), options_.patch_match)) {
+       FilterWarnings(statistics.losses(), options_)) {
     log_(LogLevel::kWarning, line);
   }
   RunSummary summary = statistics.Summarize(

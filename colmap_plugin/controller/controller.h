@@ -4,7 +4,7 @@
 #pragma once
 
 #include "colmap_plugin/controller/filter_criterion.h"
-#include "colmap_plugin/controller/options.h"
+#include "colmap_plugin/options/options.h"
 #include "src/base/cancel.h"
 #include "src/base/log.h"
 

@@ -2,7 +2,7 @@
 // flight.
 #pragma once
 
-#include "colmap_plugin/controller/options.h"
+#include "colmap_plugin/options/options.h"
 #include "cuda/cuda_devices.h"
 #include "cuda/memory_estimate.h"
 #include "src/base/log.h"

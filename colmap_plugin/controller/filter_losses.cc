@@ -68,7 +68,8 @@ double Most(FilterCriterion criterion) {
 }
 
 std::string Reason(FilterCriterion criterion,
-                   const PatchMatchStereoOptions& options) {
+                   const ControllerOptions& options) {
+  const PatchMatchStereoOptions& colmap = options.patch_match;
   switch (criterion) {
     case FilterCriterion::kFacing:
       return "all sources look at the back of the surface found";
@@ -77,23 +78,23 @@ std::string Reason(FilterCriterion criterion,
           "no source sees them under {:g} degrees or more: lower "
           "--PatchMatchStereo.filter_min_triangulation_angle, or take images "
           "further apart",
-          options.filter_min_triangulation_angle);
+          colmap.filter_min_triangulation_angle);
     case FilterCriterion::kGeometry:
       return fmt::format(
           "the depths of no source agree within {:g} pixels: check poses and "
           "overlap, or raise "
           "--PatchMatchStereo.filter_geom_consistency_max_cost",
-          options.filter_geom_consistency_max_cost);
+          colmap.filter_geom_consistency_max_cost);
     case FilterCriterion::kCorrelation:
       return fmt::format(
           "no source correlates by {:g} or more: lower "
           "--PatchMatchStereo.filter_min_ncc",
-          options.filter_min_ncc);
+          colmap.filter_min_ncc);
     case FilterCriterion::kNumConsistent:
       return fmt::format(
           "fewer than {} sources confirm them: lower "
           "--PatchMatchStereo.filter_min_num_consistent",
-          options.filter_min_num_consistent);
+          colmap.filter_min_num_consistent);
     case FilterCriterion::kUnexplained:
       return "nothing but chance decides there, as in a sky: no texture, no "
              "plane that explains it, and many sources disagree; "
@@ -104,8 +105,8 @@ std::string Reason(FilterCriterion criterion,
   return fmt::format(
       "they lie outside {:g} to {:g}: change --PatchMatchStereo.depth_min and "
       "--PatchMatchStereo.depth_max",
-      options.depth_min,
-      options.depth_max);
+      options.problems.depth_min,
+      options.problems.depth_max);
 }
 
 }  // namespace
@@ -147,7 +148,7 @@ FilterLosses CountFilterLosses(const ViewSet& views,
 
 std::vector<std::string> FilterWarnings(
     const std::map<std::string, FilterLosses>& losses_of_images,
-    const PatchMatchStereoOptions& options) {
+    const ControllerOptions& options) {
   struct Found {
     int num_images = 0;
     std::string first;

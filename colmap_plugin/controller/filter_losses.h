@@ -3,7 +3,7 @@
 #pragma once
 
 #include "colmap_plugin/controller/filter_criterion.h"
-#include "colmap_plugin/controller/options.h"
+#include "colmap_plugin/options/options.h"
 #include "src/core/consistency_filter.h"
 #include "src/engine/view.h"
 #include "src/image/hypothesis_map.h"
@@ -35,6 +35,6 @@ FilterLosses CountFilterLosses(const ViewSet& views,
 // were filtered in this run.
 std::vector<std::string> FilterWarnings(
     const std::map<std::string, FilterLosses>& losses_of_images,
-    const PatchMatchStereoOptions& options);
+    const ControllerOptions& options);
 
 }  // namespace hpm

@@ -1,5 +1,7 @@
 #include "colmap_plugin/controller/run_statistics.h"
 
+#include "colmap_plugin/options/option_record.h"
+
 #include <sys/resource.h>
 
 namespace hpm {
@@ -65,24 +67,8 @@ RunSummary RunStatistics::Summarize(
 
 nlohmann::json RunStatistics::Record(const ControllerOptions& options,
                                      const RunSummary& summary) const {
-  const PatchMatchStereoOptions& colmap = options.patch_match;
   return {
-      {"options",
-       {{"method", options.hpm.method},
-        {"random_seed", options.random_seed},
-        {"quality", options.hpm.quality},
-        {"max_views", options.hpm.max_views},
-        {"num_levels", options.hpm.num_levels},
-        {"filter_min_agreement", options.hpm.filter_min_agreement},
-        {"num_iterations", options.hpm.num_iterations},
-        {"num_geom_iterations", options.hpm.num_geom_iterations},
-        {"num_geom_passes", options.hpm.num_geom_passes},
-        {"num_fine_iterations", options.hpm.num_fine_iterations},
-        {"num_fine_geom_passes", options.hpm.num_fine_geom_passes},
-        {"geom_consistency", colmap.geom_consistency},
-        {"max_image_size", colmap.max_image_size},
-        {"window_radius", colmap.window_radius},
-        {"filter", colmap.filter}}},
+      {"options", OptionRecord(options)},
       {"backend", summary.cpu_target},
       {"seconds", summary.seconds},
       {"seconds_per_phase", seconds_},

@@ -1,11 +1,11 @@
 #include "colmap_plugin/controller/stage_runner.h"
 
-#include "colmap_plugin/controller/method_options.h"
 #include "colmap_plugin/controller/needed_views.h"
 #include "colmap_plugin/controller/preview.h"
 #include "colmap_plugin/controller/ray_convention.h"
 #include "colmap_plugin/formats/consistency_graph.h"
 #include "colmap_plugin/formats/map_file.h"
+#include "colmap_plugin/options/method_options.h"
 #include "colmap_plugin/workspace/source_level.h"
 #include "colmap_plugin/workspace/stamp.h"
 #include "src/base/error.h"

@@ -1,10 +1,9 @@
 #include "colmap_plugin/controller/stages.h"
 
-#include "colmap_plugin/controller/method_options.h"
+#include "colmap_plugin/controller/stage_fingerprint.h"
 #include "colmap_plugin/formats/content_hash.h"
 #include "colmap_plugin/formats/map_file.h"
 #include "colmap_plugin/workspace/fingerprint.h"
-#include "colmap_plugin/workspace/source_level.h"
 #include "src/base/error.h"
 
 #include <algorithm>
@@ -15,9 +14,6 @@
 
 namespace hpm {
 namespace {
-
-// Raise when the same options give other maps.
-constexpr int kAlgorithmVersion = 10;
 
 constexpr const char* kLevelPrefix = "level_";
 constexpr const char* kGeometricPrefix = "geometric_";
@@ -50,102 +46,6 @@ std::vector<Stage> MakeStages(const Schedule& schedule) {
   last.is_final = true;
   if (last.spec.geometric) last.name = "geometric";
   return stages;
-}
-
-// The pose as the reference sees it.
-void AddImage(const Workspace& workspace,
-              const ImageContents& contents,
-              int image,
-              int ref_image,
-              Fingerprint* hash) {
-  const Camera camera = workspace.CameraAround(image, ref_image);
-  hash->AddString(workspace.ImageName(image)).AddString(contents.HashOf(image));
-  hash->AddInt(camera.width).AddInt(camera.height);
-  for (const float v : {camera.fx, camera.fy, camera.cx, camera.cy})
-    hash->AddDouble(v);
-  for (const float v : camera.R.m) hash->AddDouble(v);
-  for (const float v : {camera.t.x, camera.t.y, camera.t.z}) hash->AddDouble(v);
-  const ImageDecoding decoding = workspace.Decoding(image);
-  if (decoding.stretch) {
-    hash->AddString("stretched")
-        .AddDouble(decoding.stretch->low)
-        .AddDouble(decoding.stretch->high);
-  }
-  if (decoding.reduction > 1)
-    hash->AddString("decoded at").AddInt(decoding.reduction);
-}
-
-void AddMethod(const MethodParams& params, Fingerprint* hash) {
-  hash->AddInt(params.patch_radius)
-      .AddInt(params.num_view_draws)
-      .AddInt(params.max_drawn_views);
-  for (const float v : {params.sigma_spatial,
-                        params.sigma_color,
-                        params.cut_color,
-                        params.depth_perturbation,
-                        params.normal_perturbation,
-                        params.same_plane_bound,
-                        params.worst_cost,
-                        params.prior_gamma,
-                        params.prior_beta,
-                        params.prior_depth_share,
-                        params.prior_angle}) {
-    hash->AddDouble(v);
-  }
-}
-
-void AddFilter(const PatchMatchStereoOptions& options,
-               double min_agreement,
-               Fingerprint* hash) {
-  hash->AddInt(options.filter);
-  if (!options.filter) return;
-  hash->AddDouble(min_agreement);
-  hash->AddDouble(options.filter_min_ncc)
-      .AddDouble(options.filter_min_triangulation_angle);
-  hash->AddInt(options.filter_min_num_consistent);
-  hash->AddDouble(options.filter_geom_consistency_max_cost);
-}
-
-// What a stage of a problem depends on beside the stage before.
-std::string OwnFingerprint(const Workspace& workspace,
-                           const ImageContents& contents,
-                           const StereoProblem& problem,
-                           const Stage& stage,
-                           const ControllerOptions& options) {
-  Fingerprint hash;
-  hash.AddInt(kAlgorithmVersion)
-      .AddString(stage.name)
-      .AddInt(options.random_seed);
-  AddImage(workspace, contents, problem.ref_image, problem.ref_image, &hash);
-  for (const int src : problem.src_images) {
-    AddImage(workspace, contents, src, problem.ref_image, &hash);
-    const int level = SourceLevel(workspace, problem, src);
-    if (level > 0) hash.AddString("halved").AddInt(level);
-  }
-  hash.AddDouble(problem.depth_min).AddDouble(problem.depth_max);
-  const MethodParams params = MakeMethodParams(options);
-  AddMethod(params, &hash);
-  hash.AddString(options.hpm.method);
-  for (const Pass& pass : stage.spec.passes) {
-    hash.AddInt(static_cast<int>(pass.kind)).AddInt(pass.num_iterations);
-    hash.AddInt(pass.id).AddInt(pass.level);
-    hash.AddInt(pass.max_candidates).AddInt(pass.max_drawn_views);
-    hash.AddInt(pass.half).AddInt(pass.few_views).AddInt(pass.fit_planes);
-    hash.AddInt(pass.ask_all_views).AddInt(pass.search_near);
-    hash.AddInt(static_cast<int>(pass.start));
-    hash.AddInt(static_cast<int>(pass.regions));
-    if (pass.start == StartFrom::kMissing)
-      hash.AddDouble(params.region_max_gradient);
-  }
-  if (stage.spec.geometric) {
-    hash.AddDouble(params.geom_weight).AddDouble(params.geom_max_error);
-    hash.AddDouble(params.region_max_gradient);
-  }
-  if (stage.is_final) {
-    AddFilter(options.patch_match, options.hpm.filter_min_agreement, &hash);
-    hash.AddDouble(problem.published.min).AddDouble(problem.published.max);
-  }
-  return hash.Hex();
 }
 
 // Empty for a file that cannot be read as what it should be.
@@ -200,10 +100,12 @@ void StagePlan::Update() {
   found_foreign_maps_ = false;
   for (int s = 0; s < num_stages; ++s) {
     fingerprints_.emplace_back();
+    const std::string of_stage = FingerprintOfStage(
+        stages_[s].name, stages_[s].spec, stages_[s].is_final, options_);
     for (int p = 0; p < num_problems; ++p) {
       Fingerprint hash;
       hash.AddString(OwnFingerprint(
-          workspace_, *contents_, problems[p], stages_[s], options_));
+          workspace_, *contents_, problems[p], stages_[s].is_final, of_stage));
       if (s > 0) {
         hash.AddString(fingerprints_[s - 1][p]);
         for (const int src : problems[p].src_images) {

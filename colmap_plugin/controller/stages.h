@@ -5,7 +5,7 @@
 #pragma once
 
 #include "colmap_plugin/controller/image_contents.h"
-#include "colmap_plugin/controller/options.h"
+#include "colmap_plugin/options/options.h"
 #include "colmap_plugin/workspace/problem.h"
 #include "colmap_plugin/workspace/stamp.h"
 #include "src/base/cancel.h"

@@ -2,7 +2,7 @@
 // some versions have.
 #pragma once
 
-#include "colmap_plugin/controller/options.h"
+#include "colmap_plugin/options/options.h"
 
 #include <filesystem>
 #include <string>
@@ -33,21 +33,22 @@ ControllerOptions ConvertOptions(const ColmapOptions& from,
   to.workspace.path = workspace_path;
   to.workspace.format = workspace_format;
   to.workspace.pmvs_option_name = pmvs_option_name;
-  to.config_path = config_path.string();
+  to.problems.config_path = config_path;
   to.random_seed = random_seed;
 
+  to.workspace.max_image_size = from.max_image_size;
+  to.problems.depth_min = from.depth_min;
+  to.problems.depth_max = from.depth_max;
+  to.problems.min_triangulation_angle = from.min_triangulation_angle;
+
   PatchMatchStereoOptions& stereo = to.patch_match;
-  stereo.max_image_size = from.max_image_size;
   stereo.gpu_index = from.gpu_index;
-  stereo.depth_min = from.depth_min;
-  stereo.depth_max = from.depth_max;
   stereo.window_radius = from.window_radius;
   stereo.window_step = from.window_step;
   stereo.sigma_spatial = from.sigma_spatial;
   stereo.sigma_color = from.sigma_color;
   stereo.num_samples = from.num_samples;
   stereo.ncc_sigma = from.ncc_sigma;
-  stereo.min_triangulation_angle = from.min_triangulation_angle;
   stereo.incident_angle_sigma = from.incident_angle_sigma;
   stereo.num_iterations = from.num_iterations;
   stereo.geom_consistency = from.geom_consistency;

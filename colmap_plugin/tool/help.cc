@@ -1,6 +1,6 @@
 #include "colmap_plugin/tool/help.h"
 
-#include "colmap_plugin/tool/option_table.h"
+#include "colmap_plugin/options/option_table.h"
 #include "colmap_plugin/tool/text.h"
 
 #include <fmt/format.h>
@@ -56,6 +56,8 @@ This file is the output of `hpm_mvs help --markdown`; a test compares the two.
   its default is named once in the log.
 - `PatchMatchStereo.geom_consistency_regularizer` and `.geom_consistency_max_cost` count only when
   they are given: their defaults belong to COLMAP's cost, not to this one.
+- *Makes anew*: which finished maps a later run with another value computes again, and all that
+  were made from them. `--Hpm.overwrite 1` computes all again.
 )";
 
 constexpr char kMarkdownExitCodes[] = R"(
@@ -79,12 +81,13 @@ std::string MarkdownRow(const OptionSpec& option) {
   std::string help = option.help + ".";
   if (!option.no_effect.empty())
     help += " **No effect**: " + option.no_effect + ".";
-  return fmt::format("| `{}` | {} | {} | {} | {} |\n",
+  return fmt::format("| `{}` | {} | {} | {} | {} | {} |\n",
                      option.name,
                      TypeText(option),
                      value.empty() ? "" : "`" + value + "`",
                      option.allowed.text,
-                     help);
+                     help,
+                     ConcernsText(option));
 }
 
 // "--name arg (=default)" as COLMAP prints it, the meaning below.
@@ -126,8 +129,8 @@ std::string OptionsMarkdown() {
   std::string text = kMarkdownHead;
   for (const GroupTitle& group : kGroups) {
     text += fmt::format(
-        "\n## {}\n\n| name | type | default | allowed | meaning "
-        "|\n|---|---|---|---|---|\n",
+        "\n## {}\n\n| name | type | default | allowed | meaning | "
+        "makes anew |\n|---|---|---|---|---|---|\n",
         group.title);
     for (const OptionSpec& option : OptionTable()) {
       if (option.group == group.group) text += MarkdownRow(option);

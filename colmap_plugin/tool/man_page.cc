@@ -1,6 +1,6 @@
 #include "colmap_plugin/tool/man_page.h"
 
-#include "colmap_plugin/tool/option_table.h"
+#include "colmap_plugin/options/option_table.h"
 
 #include <fmt/format.h>
 

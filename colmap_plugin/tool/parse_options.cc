@@ -1,7 +1,7 @@
 #include "colmap_plugin/tool/parse_options.h"
 
 #include "colmap_plugin/formats/input_file.h"
-#include "colmap_plugin/tool/quality.h"
+#include "colmap_plugin/options/quality.h"
 #include "colmap_plugin/tool/text.h"
 #include "src/base/error.h"
 
@@ -88,8 +88,8 @@ class Interpreter {
                       Shortened(given_["random_seed"]),
                       Shortened(given_["default_random_seed"])));
     }
-    const double depth_min = options.patch_match.depth_min;
-    const double depth_max = options.patch_match.depth_max;
+    const double depth_min = options.problems.depth_min;
+    const double depth_max = options.problems.depth_max;
     const bool automatic = depth_min == -1 && depth_max == -1;
     if (!automatic && !(depth_min >= 0 && depth_min <= depth_max)) {
       Problem(

@@ -5,7 +5,7 @@
 // one try shows all.
 #pragma once
 
-#include "colmap_plugin/tool/option_table.h"
+#include "colmap_plugin/options/option_table.h"
 
 #include <string>
 #include <vector>

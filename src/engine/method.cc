@@ -40,7 +40,7 @@ Method Plus() {
   departures.geom_views = 2;
   departures.half_visits = true;
   departures.fit_planes = true;
-  return {"hpm_plus",
+  return {kDefaultMethod,
           "the default: HPM-MVS with planes of regions that have evidence of "
           "their own",
           true,

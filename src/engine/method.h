@@ -46,6 +46,9 @@ struct Departures {
   bool fit_planes = false;   // the last one ends in src/engine/local_planes.h
 };
 
+// Of those who ask for no other.
+constexpr const char* kDefaultMethod = "hpm_plus";
+
 struct Method {
   const char* name;
   const char* summary;  // one line for help and documentation

@@ -11,7 +11,7 @@ namespace hpm {
 
 // -1: as the method's row has it.
 struct ScheduleOptions {
-  std::string method = "hpm_plus";
+  std::string method = kDefaultMethod;
   int num_iterations = -1;
   int num_geom_iterations = -1;
   int num_geom_passes = -1;  // 0: photometric only

@@ -17,7 +17,8 @@ LIBRARY = BASE + CORE + ("src/image", "src/prior", "src/engine")
 BACKENDS = LIBRARY + ("src/cpu", "cuda")
 FORMATS = BACKENDS + ("colmap_plugin/formats",)
 WORKSPACE = FORMATS + ("colmap_plugin/workspace",)
-CONTROLLER = WORKSPACE + ("colmap_plugin/controller",)
+OPTIONS = WORKSPACE + ("colmap_plugin/options",)
+CONTROLLER = OPTIONS + ("colmap_plugin/controller",)
 EVERYTHING = OUR_FOLDERS
 
 # Room -> what it may include, besides itself.
@@ -31,7 +32,8 @@ ALLOWED = {
     "cuda": LIBRARY,
     "colmap_plugin/formats": BACKENDS,
     "colmap_plugin/workspace": FORMATS,
-    "colmap_plugin/controller": WORKSPACE,
+    "colmap_plugin/options": WORKSPACE,
+    "colmap_plugin/controller": OPTIONS,
     "colmap_plugin/tool": CONTROLLER,
     "colmap_plugin/in_colmap": CONTROLLER + ("colmap_plugin/tool",),
     "colmap_plugin/wrapper": (),
@@ -107,7 +109,8 @@ class TheTestItself(unittest.TestCase):
             "cuda/backend.cu": "src/cpu/backend.h",
             "src/engine/files.cc": "colmap_plugin/formats/map_file.h",
             "colmap_plugin/formats/map_file.cc": "colmap_plugin/workspace/workspace.h",
-            "colmap_plugin/workspace/workspace.cc": "colmap_plugin/controller/controller.h",
+            "colmap_plugin/workspace/workspace.cc": "colmap_plugin/options/options.h",
+            "colmap_plugin/options/option_table.cc": "colmap_plugin/controller/controller.h",
             "colmap_plugin/controller/controller.cc": "colmap_plugin/tool/main.h",
             "colmap_plugin/tool/main.cc": "bench/eval/ply.h",
         }

@@ -144,8 +144,8 @@ TEST_F(ControllerTest, NothingOutsideAGivenRangeIsPublished) {
   const float nearest = sorted.front(), middle = sorted[sorted.size() / 2];
   for (const auto& [min, max] :
        {std::pair(nearest, middle), {0.7f * nearest, 0.85f * nearest}}) {
-    options_.patch_match.depth_min = min;
-    options_.patch_match.depth_max = max;
+    options_.problems.depth_min = min;
+    options_.problems.depth_max = max;
     Run();
     const std::vector<float> depth = Depth(1, "geometric");
     int num_published = 0, num_false = 0;
@@ -166,8 +166,8 @@ TEST_F(ControllerTest, NothingOutsideAGivenRangeIsPublished) {
 // The photometric maps are cut, too, once nobody reads them, and made whole
 // again for whoever does.
 TEST_F(ControllerTest, InputMapsAreCutWhenTheRunIsComplete) {
-  options_.patch_match.depth_min = 4.5;
-  options_.patch_match.depth_max = 5;
+  options_.problems.depth_min = 4.5;
+  options_.problems.depth_max = 5;
   Run();
   const auto num_outside = [&](int image) {
     const std::vector<float> depth = Depth(image, "photometric");
@@ -183,7 +183,7 @@ TEST_F(ControllerTest, InputMapsAreCutWhenTheRunIsComplete) {
   EXPECT_EQ(Depth(1, "geometric"), expected);
   for (int i = 0; i < kNumImages; ++i) EXPECT_EQ(num_outside(i), 0);
   // Another range, of the same search.
-  options_.patch_match.depth_max = 5.2;
+  options_.problems.depth_max = 5.2;
   EXPECT_EQ(Run().num_computed, kNumImages);
 }
 

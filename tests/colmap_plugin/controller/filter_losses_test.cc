@@ -168,7 +168,7 @@ TEST_F(FilterLossesTest, ImagesOfOnePixelAreLookedAt) {
 }
 
 TEST(FilterWarnings, NameTheOptionOnceWithCountAndExample) {
-  PatchMatchStereoOptions options;
+  ControllerOptions options;
   EXPECT_THAT(
       FilterWarnings({{"a.jpg", {{FilterCriterion::kAngle, 0.2}}}}, options),
       IsEmpty());
@@ -185,7 +185,7 @@ TEST(FilterWarnings, NameTheOptionOnceWithCountAndExample) {
 }
 
 TEST(FilterWarnings, EveryCriterionHasItsOption) {
-  PatchMatchStereoOptions options;
+  ControllerOptions options;
   const std::pair<FilterCriterion, const char*> words[] = {
       {FilterCriterion::kGeometry, "filter_geom_consistency_max_cost"},
       {FilterCriterion::kCorrelation, "filter_min_ncc"},

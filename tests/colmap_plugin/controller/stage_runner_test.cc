@@ -1,6 +1,6 @@
 #include "colmap_plugin/controller/stage_runner.h"
 
-#include "colmap_plugin/controller/method_options.h"
+#include "colmap_plugin/options/method_options.h"
 #include "src/cpu/cpu_backend.h"
 #include "tests/colmap_plugin/controller/scene_workspace.h"
 

@@ -1,8 +1,8 @@
 #include "colmap_plugin/controller/stages.h"
 
-#include "colmap_plugin/controller/method_options.h"
 #include "colmap_plugin/formats/consistency_graph.h"
 #include "colmap_plugin/formats/map_file.h"
+#include "colmap_plugin/options/method_options.h"
 #include "colmap_plugin/workspace/stamp.h"
 #include "src/base/error.h"
 #include "tests/colmap_plugin/controller/scene_workspace.h"

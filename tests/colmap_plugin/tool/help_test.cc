@@ -2,7 +2,7 @@
 
 #include "colmap_plugin/tool/completion.h"
 #include "colmap_plugin/tool/man_page.h"
-#include "colmap_plugin/tool/option_table.h"
+#include "colmap_plugin/options/option_table.h"
 
 #include <fstream>
 #include <iterator>

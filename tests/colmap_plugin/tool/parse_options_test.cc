@@ -40,8 +40,8 @@ TEST(ParseOptionsTest, EqualSignAndNextWordMeanTheSame) {
       {"--PatchMatchStereo.depth_min=1", "--PatchMatchStereo.depth_max=4"});
   for (const ParsedOptions& parsed : {spaced, joined}) {
     EXPECT_THAT(parsed.problems, IsEmpty());
-    EXPECT_EQ(parsed.options.controller.patch_match.depth_min, 1);
-    EXPECT_EQ(parsed.options.controller.patch_match.depth_max, 4);
+    EXPECT_EQ(parsed.options.controller.problems.depth_min, 1);
+    EXPECT_EQ(parsed.options.controller.problems.depth_max, 4);
     EXPECT_EQ(parsed.options.controller.workspace.path, "w");
   }
 }
@@ -57,7 +57,7 @@ TEST(ParseOptionsTest, UniquePrefixIsEnough) {
   const auto parsed =
       ParseOptions({"--workspace_p", "w", "--PatchMatchStereo.max_i=7"});
   EXPECT_THAT(parsed.problems, IsEmpty());
-  EXPECT_EQ(parsed.options.controller.patch_match.max_image_size, 7);
+  EXPECT_EQ(parsed.options.controller.workspace.max_image_size, 7);
 }
 
 TEST(ParseOptionsTest, FullNameWinsOverLongerNamesWithThatBeginning) {
@@ -241,7 +241,7 @@ TEST(ParseOptionsTest, ProjectFileTakesSectionsFlatKeysAndComments) {
   const ControllerOptions& options = parsed.options.controller;
   EXPECT_EQ(options.workspace.path, "/data/dense");
   EXPECT_EQ(options.patch_match.cache_size, 1.5);
-  EXPECT_EQ(options.patch_match.max_image_size, 1000);
+  EXPECT_EQ(options.workspace.max_image_size, 1000);
   EXPECT_FALSE(options.patch_match.filter);
   EXPECT_EQ(options.hpm.num_geom_passes, 4);
 }
@@ -256,7 +256,7 @@ TEST(ParseOptionsTest, OnlyTheProjectFileCountsAndThatIsSaid) {
                                     "2"});
   EXPECT_THAT(parsed.problems, IsEmpty());
   EXPECT_EQ(parsed.options.controller.workspace.path, "in_file");
-  EXPECT_EQ(parsed.options.controller.patch_match.max_image_size, -1);
+  EXPECT_EQ(parsed.options.controller.workspace.max_image_size, -1);
   EXPECT_THAT(parsed.notes, ElementsAre(HasSubstr(path)));
 }
 
@@ -301,7 +301,7 @@ TEST(ParseOptionsTest, DecimalCommaLocaleChangesNothing) {
                              "--PatchMatchStereo.max_image_size=12345"});
   EXPECT_THAT(parsed.problems, IsEmpty());
   EXPECT_EQ(parsed.options.controller.patch_match.cache_size, 1.5);
-  EXPECT_EQ(parsed.options.controller.patch_match.max_image_size, 12345);
+  EXPECT_EQ(parsed.options.controller.workspace.max_image_size, 12345);
   EXPECT_THAT(Parse({"--PatchMatchStereo.cache_size", "1,5"}).problems,
               SizeIs(1));
   const std::string path =

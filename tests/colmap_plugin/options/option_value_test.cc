@@ -1,4 +1,4 @@
-#include "colmap_plugin/tool/option_value.h"
+#include "colmap_plugin/options/option_value.h"
 
 #include "tests/colmap_plugin/tool/comma_locale.h"
 

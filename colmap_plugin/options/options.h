@@ -1,28 +1,28 @@
-// Every option of the program, grouped as on the command line. One struct per
-// prefix; the option table in colmap_plugin/tool maps names to these members.
+// Every option of the program, grouped as on the command line, with its
+// default: the one place where that stands. colmap_plugin/options/option_table
+// maps names to these members.
 #pragma once
 
+#include "colmap_plugin/workspace/problem.h"
 #include "colmap_plugin/workspace/workspace.h"
+#include "src/engine/method.h"
 
 #include <string>
 
 namespace hpm {
 
-// "--PatchMatchStereo.*": COLMAP's names, types and defaults (3.8 and 4.x).
-// Options whose meaning does not exist in this method are accepted and named
-// once in the log when they are set; see docs/options.md.
+// "--PatchMatchStereo.*": COLMAP's names, types and defaults (3.8 and 4.x), but
+// for those in WorkspaceOptions and ProblemOptions. Options whose meaning does
+// not exist in this method are accepted and named once in the log when they are
+// set; see docs/options.md.
 struct PatchMatchStereoOptions {
-  int max_image_size = -1;
   std::string gpu_index = "-1";
-  double depth_min = -1;
-  double depth_max = -1;
   int window_radius = 5;
   int window_step = 1;
   double sigma_spatial = -1;
   double sigma_color = 0.2f;
   int num_samples = 15;
   double ncc_sigma = 0.6f;
-  double min_triangulation_angle = 1;
   double incident_angle_sigma = 0.9f;
   int num_iterations = 5;
   bool geom_consistency = true;
@@ -41,9 +41,9 @@ struct PatchMatchStereoOptions {
 
 // "--Hpm.*": what COLMAP does not have.
 struct HpmOptions {
-  std::string method = "hpm_plus";  // see src/engine/method.h
-  std::string quality = "high";     // see colmap_plugin/tool/quality.h
-  std::string device = "auto";      // auto, cpu or cuda
+  std::string method = kDefaultMethod;
+  std::string quality = "high";  // see colmap_plugin/options/quality.h
+  std::string device = "auto";   // auto, cpu or cuda
   int gpu_images = -1;  // in flight per entry of gpu_index; -1: by memory
   std::string cpu_target =
       "auto";  // auto, scalar, or a SIMD target of this machine
@@ -53,10 +53,11 @@ struct HpmOptions {
   int num_geom_passes = -1;
   int num_fine_iterations = -1;  // the same at levels finer than the coarsest
   int num_fine_geom_passes = -1;
-  int max_views = -1;           // source views that judge a pixel in a visit
-  double weak_gradient = 1.4f;  // grey levels per pixel
-  double geom_weight = 0.1;     // lambda of the geometric term
-  double geom_max_error = 5;    // pixels, cap of the geometric term
+  int max_views = -1;  // source views that judge a pixel in a visit
+  double weak_gradient =
+      MethodParams().region_max_gradient;           // grey levels per pixel
+  double geom_weight = MethodParams().geom_weight;  // lambda of that term
+  double geom_max_error = MethodParams().geom_max_error;  // pixels, its cap
   int num_levels = -1;  // of the hierarchy; -1: by method and image size
   double filter_min_agreement = 0.5;  // see needed_views.h
   bool previews = false;   // colour pictures of the maps in stereo/previews
@@ -65,10 +66,27 @@ struct HpmOptions {
 
 struct ControllerOptions {
   WorkspaceOptions workspace;
-  std::string config_path;
+  ProblemOptions problems;
   int random_seed = 0;
   PatchMatchStereoOptions patch_match;
   HpmOptions hpm;
+};
+
+// COLMAP's options about its own logging; accepted, never read.
+struct LogOptions {
+  bool log_to_stderr = false;                  // up to 3.13
+  std::string log_target = "stderr_and_file";  // 4.0 and later, as all below
+  std::string log_path;
+  int log_level = 0;
+  int log_severity = 0;
+  bool log_color = true;
+};
+
+// What the command line holds.
+struct ToolOptions {
+  std::string project_path;
+  ControllerOptions controller;
+  LogOptions log;
 };
 
 }  // namespace hpm

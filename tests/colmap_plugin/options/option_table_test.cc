@@ -1,4 +1,4 @@
-#include "colmap_plugin/tool/option_table.h"
+#include "colmap_plugin/options/option_table.h"
 
 #include "colmap_plugin/tool/parse_options.h"
 

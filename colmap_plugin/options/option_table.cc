@@ -1,8 +1,8 @@
-#include "colmap_plugin/tool/option_table.h"
+#include "colmap_plugin/options/option_table.h"
 
-#include "colmap_plugin/tool/quality.h"
+#include "colmap_plugin/options/quality.h"
 #include "src/core/limits.h"
-#include "src/engine/schedule.h"
+#include "src/engine/method.h"
 
 #include <utility>
 
@@ -13,6 +13,16 @@ constexpr OptionGroup kCommon = OptionGroup::kCommon;
 constexpr OptionGroup kColmap = OptionGroup::kColmap;
 constexpr OptionGroup kExpert = OptionGroup::kExpert;
 
+constexpr Concerns kAllStages = Concerns::kAllStages;
+constexpr Concerns kGeometricStages = Concerns::kGeometricStages;
+constexpr Concerns kRegionStages = Concerns::kRegionStages;
+constexpr Concerns kFinalStage = Concerns::kFinalStage;
+constexpr Concerns kPasses = Concerns::kPasses;
+constexpr Concerns kInputs = Concerns::kInputs;
+constexpr Concerns kOtherOptions = Concerns::kOtherOptions;
+constexpr Concerns kRounding = Concerns::kRounding;
+constexpr Concerns kNothing = Concerns::kNothing;
+
 // Far beyond what is of use, and far below what overflows or fills the memory.
 constexpr int kMaxThreads = 1024;
 constexpr int kMaxGpuImages = 64;
@@ -22,6 +32,7 @@ constexpr int kMaxPasses = 100;
 // One row; `select` maps ToolOptions* to a pointer to the member.
 template <class Select>
 OptionSpec Row(OptionGroup group,
+               Concerns concerns,
                std::string name,
                Select select,
                Allowed allowed,
@@ -29,6 +40,7 @@ OptionSpec Row(OptionGroup group,
                std::string no_effect = "") {
   return {
       group,
+      concerns,
       std::move(name),
       [select](ToolOptions* options) { return OptionMember(select(options)); },
       std::move(allowed),
@@ -36,48 +48,29 @@ OptionSpec Row(OptionGroup group,
       std::move(no_effect)};
 }
 
-// A row of each struct: the name on the command line is prefix + name.
-template <class T, class... Rest>
-OptionSpec Stereo(OptionGroup group,
-                  const std::string& name,
-                  T PatchMatchStereoOptions::*member,
-                  Rest... rest) {
-  return Row(
-      group,
-      "PatchMatchStereo." + name,
-      [member](ToolOptions* options) {
-        return &(options->controller.patch_match.*member);
-      },
-      std::move(rest)...);
-}
+// A row of one of the structs in ControllerOptions; the name on the command
+// line is prefix + name.
+template <class Struct>
+struct RowsOf {
+  const char* prefix;
+  Struct ControllerOptions::*where;
 
-template <class T, class... Rest>
-OptionSpec Hpm(OptionGroup group,
-               const std::string& name,
-               T HpmOptions::*member,
-               Rest... rest) {
-  return Row(
-      group,
-      "Hpm." + name,
-      [member](ToolOptions* options) {
-        return &(options->controller.hpm.*member);
-      },
-      std::move(rest)...);
-}
-
-template <class T, class... Rest>
-OptionSpec Workspace(OptionGroup group,
-                     const std::string& name,
-                     T WorkspaceOptions::*member,
-                     Rest... rest) {
-  return Row(
-      group,
-      name,
-      [member](ToolOptions* options) {
-        return &(options->controller.workspace.*member);
-      },
-      std::move(rest)...);
-}
+  template <class T, class... Rest>
+  OptionSpec operator()(OptionGroup group,
+                        Concerns concerns,
+                        const std::string& name,
+                        T Struct::*member,
+                        Rest... rest) const {
+    return Row(
+        group,
+        concerns,
+        prefix + name,
+        [struct_member = where, member](ToolOptions* options) {
+          return &(options->controller.*struct_member.*member);
+        },
+        std::move(rest)...);
+  }
+};
 
 template <class T>
 OptionSpec Log(const std::string& name,
@@ -85,6 +78,7 @@ OptionSpec Log(const std::string& name,
                std::string help) {
   return Row(
       kExpert,
+      kNothing,
       name,
       [member](ToolOptions* options) { return &(options->log.*member); },
       Anything(),
@@ -92,129 +86,142 @@ OptionSpec Log(const std::string& name,
       "messages go to standard output, warnings and errors to standard error");
 }
 
-int* Seed(ToolOptions* options) { return &options->controller.random_seed; }
+// One seed with COLMAP's two names for it.
+OptionSpec Seed(const std::string& name, std::string help) {
+  return Row(
+      kColmap,
+      kAllStages,
+      name,
+      [](ToolOptions* options) { return &options->controller.random_seed; },
+      Anything(),
+      std::move(help));
+}
 
 std::vector<OptionSpec> MakeTable() {
   using P = PatchMatchStereoOptions;
   using H = HpmOptions;
   using W = WorkspaceOptions;
+  using I = ProblemOptions;
+  using C = ControllerOptions;
+  const RowsOf<P> Stereo = {"PatchMatchStereo.", &C::patch_match};
+  const RowsOf<H> Hpm = {"Hpm.", &C::hpm};
+  const RowsOf<W> Workspace = {"", &C::workspace};
+  const RowsOf<W> StereoWorkspace = {"PatchMatchStereo.", &C::workspace};
+  const RowsOf<I> Problems = {"", &C::problems};
+  const RowsOf<I> StereoProblems = {"PatchMatchStereo.", &C::problems};
   const char* const kDepthRule =
       "both depth_min and depth_max -1, or 0 <= depth_min <= depth_max";
   return {
       // A table reads better packed.
       // clang-format off
       // What most runs set.
-      Workspace(kCommon, "workspace_path", &W::path, Anything(),
+      Workspace(kCommon, kInputs, "workspace_path", &W::path, Anything(),
                 "Folder with images/, sparse/ and stereo/, as image_undistorter leaves it"),
-      Stereo(kCommon, "max_image_size", &P::max_image_size, Anything(),
+      StereoWorkspace(kCommon, kInputs, "max_image_size", &W::max_image_size, Anything(),
              "Longest image side in pixels; larger images are shrunk; <= 0: no limit"),
-      Stereo(kCommon, "geom_consistency", &P::geom_consistency, Anything(),
+      Stereo(kCommon, kPasses, "geom_consistency", &P::geom_consistency, Anything(),
              "Add the geometric passes, which make depths agree between images and find surfaces with "
              "little texture, and write *.geometric.bin; 0: only *.photometric.bin, for a quick look: "
              "less dense, with many more gross errors"),
-      Hpm(kCommon, "method", &H::method, OneOf(MethodNames()),
+      Hpm(kCommon, kAllStages, "method", &H::method, OneOf(MethodNames()),
           "hpm_plus: the default, made to be at least as good as the others on every scene; hpm, "
           "hpm_fast: HPM-MVS as published; the others are rows of the paper's ablation (docs/ablation.md)"),
-      Hpm(kCommon, "quality", &H::quality, OneOf(QualityNames()),
+      Hpm(kCommon, kOtherOptions, "quality", &H::quality, OneOf(QualityNames()),
           "Effort of hpm_plus: sets Hpm.num_iterations, num_geom_passes, num_fine_iterations and "
           "num_fine_geom_passes where they are not given (docs/benchmarks.md)"),
-      Hpm(kCommon, "overwrite", &H::overwrite, Anything(),
+      Hpm(kCommon, kNothing, "overwrite", &H::overwrite, Anything(),
           "Compute maps again that are complete and made with the same options"),
-      Hpm(kCommon, "previews", &H::previews, Anything(),
+      Hpm(kCommon, kNothing, "previews", &H::previews, Anything(),
           "Write colour pictures of the maps to stereo/previews"),
-      Stereo(kCommon, "num_threads", &P::num_threads, Between(-1, kMaxThreads),
+      Stereo(kCommon, kNothing, "num_threads", &P::num_threads, Between(-1, kMaxThreads),
              "Threads to use; -1 or 0: all cores"),
-      Hpm(kCommon, "device", &H::device, OneOf({"auto", "cpu", "cuda"}),
+      Hpm(kCommon, kRounding, "device", &H::device, OneOf({"auto", "cpu", "cuda"}),
           "auto: GPUs that pass a self-test, else the CPU; cuda: GPUs or an error"),
-      Stereo(kCommon, "gpu_index", &P::gpu_index, IndexList(),
+      Stereo(kCommon, kNothing, "gpu_index", &P::gpu_index, IndexList(),
              "GPUs to use: -1 all, or a list as 0,1; a GPU named twice gets twice the images"),
-      Stereo(kCommon, "cache_size", &P::cache_size, Above(0), "Memory for images and maps in GiB, at most; what the images at work need is enough"),
-      Row(
-          kCommon, "project_path", [](ToolOptions* o) { return &o->project_path; }, Anything(),
+      Stereo(kCommon, kNothing, "cache_size", &P::cache_size, Above(0), "Memory for images and maps in GiB, at most; what the images at work need is enough"),
+      Row(kCommon, kNothing, "project_path", [](ToolOptions* o) { return &o->project_path; }, Anything(),
           "Read all options from this ini file; the rest of the command line is then ignored"),
 
       // COLMAP's other options, in COLMAP's order.
-      Workspace(kColmap, "workspace_format", &W::format, OneOfAnyCase({"COLMAP", "PMVS"}),
+      Workspace(kColmap, kInputs, "workspace_format", &W::format, OneOfAnyCase({"COLMAP", "PMVS"}),
                 "Layout of the workspace"),
-      Workspace(kColmap, "pmvs_option_name", &W::pmvs_option_name, Anything(),
+      Workspace(kColmap, kInputs, "pmvs_option_name", &W::pmvs_option_name, Anything(),
                 "Option file of a PMVS workspace"),
-      Row(
-          kColmap, "config_path", [](ToolOptions* o) { return &o->controller.config_path; },
-          Anything(), "Read this file in place of the workspace's patch-match.cfg"),
-      Row(kColmap, "random_seed", Seed, Anything(),
-          "Same seed, options and CPU target: same bytes (COLMAP up to 3.12)"),
-      Row(kColmap, "default_random_seed", Seed, Anything(),
-          "The same as random_seed (COLMAP 3.13 and later)"),
-      Stereo(kColmap, "depth_min", &P::depth_min, CheckedTogether(kDepthRule),
+      Problems(kColmap, kInputs, "config_path", &I::config_path, Anything(),
+               "Read this file in place of the workspace's patch-match.cfg"),
+      Seed("random_seed", "Same seed, options and CPU target: same bytes (COLMAP up to 3.12)"),
+      Seed("default_random_seed", "The same as random_seed (COLMAP 3.13 and later)"),
+      StereoProblems(kColmap, kInputs, "depth_min", &I::depth_min, CheckedTogether(kDepthRule),
              "Near end of the depth range in model units; nothing outside is published; -1: from the "
              "sparse points, with some slack"),
-      Stereo(kColmap, "depth_max", &P::depth_max, CheckedTogether(kDepthRule),
+      StereoProblems(kColmap, kInputs, "depth_max", &I::depth_max, CheckedTogether(kDepthRule),
              "Far end of the depth range"),
-      Stereo(kColmap, "window_radius", &P::window_radius, Between(1, 32),
+      Stereo(kColmap, kAllStages, "window_radius", &P::window_radius, Between(1, 32),
              "Half side of the matching window in pixels"),
-      Stereo(kColmap, "sigma_spatial", &P::sigma_spatial, Anything(),
+      Stereo(kColmap, kAllStages, "sigma_spatial", &P::sigma_spatial, Anything(),
              "Spatial spread of the window weights in pixels; <= 0: window_radius"),
-      Stereo(kColmap, "num_samples", &P::num_samples, Above(0),
+      Stereo(kColmap, kAllStages, "num_samples", &P::num_samples, Above(0),
              "Monte-Carlo draws when source views are chosen for a pixel"),
-      Stereo(kColmap, "min_triangulation_angle", &P::min_triangulation_angle, BetweenBelow(0, 180),
+      StereoProblems(kColmap, kInputs, "min_triangulation_angle", &I::min_triangulation_angle, BetweenBelow(0, 180),
              "Smallest angle in degrees between a reference and an automatic source image"),
-      Stereo(kColmap, "geom_consistency_regularizer", &P::geom_consistency_regularizer, AtLeast(0),
+      Stereo(kColmap, kOtherOptions, "geom_consistency_regularizer", &P::geom_consistency_regularizer, AtLeast(0),
              "When given, sets Hpm.geom_weight unless that is given too"),
-      Stereo(kColmap, "geom_consistency_max_cost", &P::geom_consistency_max_cost, AtLeast(0),
+      Stereo(kColmap, kOtherOptions, "geom_consistency_max_cost", &P::geom_consistency_max_cost, AtLeast(0),
              "When given, sets Hpm.geom_max_error unless that is given too"),
-      Stereo(kColmap, "filter", &P::filter, Anything(),
+      Stereo(kColmap, kFinalStage, "filter", &P::filter, Anything(),
              "Remove pixels that too few source images confirm"),
-      Stereo(kColmap, "filter_min_ncc", &P::filter_min_ncc, Between(-1, 1),
+      Stereo(kColmap, kFinalStage, "filter_min_ncc", &P::filter_min_ncc, Between(-1, 1),
              "Smallest correlation at which a source image confirms a pixel"),
-      Stereo(kColmap, "filter_min_triangulation_angle", &P::filter_min_triangulation_angle,
+      Stereo(kColmap, kFinalStage, "filter_min_triangulation_angle", &P::filter_min_triangulation_angle,
              Between(0, 180), "Smallest angle in degrees at which a source image confirms a pixel"),
-      Stereo(kColmap, "filter_min_num_consistent", &P::filter_min_num_consistent, AtLeast(0),
+      Stereo(kColmap, kFinalStage, "filter_min_num_consistent", &P::filter_min_num_consistent, AtLeast(0),
              "Source images that must confirm a pixel"),
-      Stereo(kColmap, "filter_geom_consistency_max_cost", &P::filter_geom_consistency_max_cost,
+      Stereo(kColmap, kFinalStage, "filter_geom_consistency_max_cost", &P::filter_geom_consistency_max_cost,
              AtLeast(0), "Largest forward-backward reprojection error in pixels of a confirmation"),
-      Stereo(kColmap, "write_consistency_graph", &P::write_consistency_graph, Anything(),
+      Stereo(kColmap, kNothing, "write_consistency_graph", &P::write_consistency_graph, Anything(),
              "Also write stereo/consistency_graphs"),
 
       // Fine tuning, and what has no meaning in this method.
-      Hpm(kExpert, "gpu_images", &H::gpu_images, Between(-1, kMaxGpuImages),
+      Hpm(kExpert, kNothing, "gpu_images", &H::gpu_images, Between(-1, kMaxGpuImages),
           "Images in flight per entry of gpu_index; -1 or 0: half as many as threads, shared by the entries, 3 to 8 each, or fewer if memory is short"),
-      Hpm(kExpert, "cpu_target", &H::cpu_target, Anything(),
+      Hpm(kExpert, kRounding, "cpu_target", &H::cpu_target, Anything(),
           "SIMD instructions to use: auto, scalar, or a target of this machine"),
-      Hpm(kExpert, "num_iterations", &H::num_iterations, Between(-1, kMaxIterations),
+      Hpm(kExpert, kPasses, "num_iterations", &H::num_iterations, Between(-1, kMaxIterations),
           "Red/black iterations of a photometric or prior pass; -1 or 0: the method's own"),
-      Hpm(kExpert, "num_geom_iterations", &H::num_geom_iterations, Between(-1, kMaxIterations),
+      Hpm(kExpert, kPasses, "num_geom_iterations", &H::num_geom_iterations, Between(-1, kMaxIterations),
           "Red/black iterations of a geometric pass; -1 or 0: the method's own"),
-      Hpm(kExpert, "num_geom_passes", &H::num_geom_passes, Between(-1, kMaxPasses),
+      Hpm(kExpert, kPasses, "num_geom_passes", &H::num_geom_passes, Between(-1, kMaxPasses),
           "Geometric passes; -1 or 0: the method's own"),
-      Hpm(kExpert, "num_fine_iterations", &H::num_fine_iterations, Between(-1, kMaxIterations),
+      Hpm(kExpert, kPasses, "num_fine_iterations", &H::num_fine_iterations, Between(-1, kMaxIterations),
           "Hpm.num_iterations of hpm_plus at levels finer than the coarsest; -1: its own"),
-      Hpm(kExpert, "num_fine_geom_passes", &H::num_fine_geom_passes, Between(-1, kMaxPasses),
+      Hpm(kExpert, kPasses, "num_fine_geom_passes", &H::num_fine_geom_passes, Between(-1, kMaxPasses),
           "Hpm.num_geom_passes of hpm_plus at levels finer than the coarsest; -1 or 0: its own"),
-      Hpm(kExpert, "max_views", &H::max_views, Between(-1, kMaxViews),
+      Hpm(kExpert, kAllStages, "max_views", &H::max_views, Between(-1, kMaxViews),
           "Source images that judge a pixel at a time, chosen anew in every iteration; -1 or 0: the method's own"),
-      Hpm(kExpert, "weak_gradient", &H::weak_gradient, AtLeast(0),
+      Hpm(kExpert, kRegionStages, "weak_gradient", &H::weak_gradient, AtLeast(0),
           "Grey levels per pixel under which a region counts as untextured (hpm_plus)"),
-      Hpm(kExpert, "geom_weight", &H::geom_weight, AtLeast(0),
+      Hpm(kExpert, kGeometricStages, "geom_weight", &H::geom_weight, AtLeast(0),
           "Weight of the geometric term per pixel of reprojection error"),
-      Hpm(kExpert, "geom_max_error", &H::geom_max_error, AtLeast(0),
+      Hpm(kExpert, kGeometricStages, "geom_max_error", &H::geom_max_error, AtLeast(0),
           "Cap of the reprojection error in the geometric term, in pixels"),
-      Hpm(kExpert, "num_levels", &H::num_levels, Between(-1, 8),
+      Hpm(kExpert, kPasses, "num_levels", &H::num_levels, Between(-1, 8),
           "Levels of the prior hierarchy or image pyramid; -1 or 0: by method and image size"),
-      Hpm(kExpert, "filter_min_agreement", &H::filter_min_agreement, Between(0, 1),
+      Hpm(kExpert, kFinalStage, "filter_min_agreement", &H::filter_min_agreement, Between(0, 1),
           "Share of the source images that see a plain surface which nothing explains, as a sky, that must confirm it "
           "(hpm_plus); 0: filter_min_num_consistent alone, keeps more of walls and of skies"),
-      Stereo(kExpert, "allow_missing_files", &P::allow_missing_files, Anything(),
+      Stereo(kExpert, kNothing, "allow_missing_files", &P::allow_missing_files, Anything(),
              "Leave out source images whose files are missing",
              "source images without a file are left out in any case, with a warning"),
-      Stereo(kExpert, "window_step", &P::window_step, Between(1, 2), "Pixel stride in the window",
+      Stereo(kExpert, kNothing, "window_step", &P::window_step, Between(1, 2), "Pixel stride in the window",
              "the stride of the window is part of the method"),
-      Stereo(kExpert, "sigma_color", &P::sigma_color, Above(0),
+      Stereo(kExpert, kNothing, "sigma_color", &P::sigma_color, Above(0),
              "Colour spread of COLMAP's window weights", "the colour spread is part of the method"),
-      Stereo(kExpert, "ncc_sigma", &P::ncc_sigma, Above(0), "Spread of COLMAP's NCC likelihood",
+      Stereo(kExpert, kNothing, "ncc_sigma", &P::ncc_sigma, Above(0), "Spread of COLMAP's NCC likelihood",
              "source views are weighted in another way"),
-      Stereo(kExpert, "incident_angle_sigma", &P::incident_angle_sigma, Above(0),
+      Stereo(kExpert, kNothing, "incident_angle_sigma", &P::incident_angle_sigma, Above(0),
              "Spread of COLMAP's incident angle prior", "source views are weighted in another way"),
-      Stereo(kExpert, "num_iterations", &P::num_iterations, Above(0),
+      Stereo(kExpert, kNothing, "num_iterations", &P::num_iterations, Above(0),
              "Iterations of COLMAP's sweeps",
              "COLMAP counts sweeps of another scheme; use Hpm.num_iterations"),
       Log("log_to_stderr", &LogOptions::log_to_stderr, "Log switch of COLMAP up to 3.13"),
@@ -255,6 +262,29 @@ std::string AllowedText(const OptionSpec& option) {
   const std::string type = TypeText(option);
   if (type == "bool") return "0/1, true/false, yes/no or on/off";
   return option.allowed.text.empty() ? type : type + ", " + option.allowed.text;
+}
+
+std::string ConcernsText(const OptionSpec& option) {
+  switch (option.concerns) {
+    case kAllStages:
+      return "all stages";
+    case kGeometricStages:
+      return "geometric stages";
+    case kRegionStages:
+      return "geometric stages, finer levels";
+    case kFinalStage:
+      return "the last stage";
+    case kPasses:
+      return "stages whose passes change";
+    case kInputs:
+      return "images whose inputs change";
+    case kOtherOptions:
+      return "as the options it sets";
+    case kRounding:
+    case kNothing:
+      break;
+  }
+  return "nothing";
 }
 
 }  // namespace hpm

@@ -1,4 +1,4 @@
-#include "colmap_plugin/tool/quality.h"
+#include "colmap_plugin/options/quality.h"
 
 namespace hpm {
 namespace {

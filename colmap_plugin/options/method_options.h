@@ -1,7 +1,7 @@
 // From the command line's options to the numbers of the algorithm.
 #pragma once
 
-#include "colmap_plugin/controller/options.h"
+#include "colmap_plugin/options/options.h"
 #include "src/core/consistency_filter.h"
 #include "src/engine/schedule.h"
 

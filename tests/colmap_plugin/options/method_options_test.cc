@@ -1,4 +1,4 @@
-#include "colmap_plugin/controller/method_options.h"
+#include "colmap_plugin/options/method_options.h"
 
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ TEST(MethodOptions, DefaultsAreThePapersNotColmaps) {
 
 TEST(MethodOptions, NumbersThatAreNotGivenAreTheMethodsOwn) {
   ControllerOptions options;
-  EXPECT_EQ(MakeScheduleOptions(options).num_iterations, -1);
+  EXPECT_EQ(MakeScheduleOptions(options).num_iterations, 2);
   EXPECT_EQ(MakeMethodParams(options).max_drawn_views, 4);
   EXPECT_EQ(MakeMethodParams(options).cut_color, 15);
   options.hpm.method = "hpm";
@@ -33,7 +33,7 @@ TEST(MethodOptions, NumbersThatAreNotGivenAreTheMethodsOwn) {
   options.hpm.max_views = 3;
   options.hpm.num_iterations = 0;
   EXPECT_EQ(MakeMethodParams(options).max_drawn_views, 3);
-  EXPECT_EQ(MakeScheduleOptions(options).num_iterations, -1);
+  EXPECT_EQ(MakeScheduleOptions(options).num_iterations, 3);
 }
 
 TEST(MethodOptions, WithoutGeometricConsistencyThereAreNoGeometricPasses) {
