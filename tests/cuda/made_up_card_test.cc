@@ -2,10 +2,10 @@
 #include "tests/cuda/made_up_card.h"
 
 #include "cuda/cuda_backend.h"
-#include "cuda/gpu_error.h"
 #include "cuda/self_test.h"
 #include "src/core/sampling_pattern.h"
 #include "src/cpu/cpu_backend.h"
+#include "src/engine/gpu_error.h"
 #include "tests/cuda/test_problem.h"
 
 #include <cstring>

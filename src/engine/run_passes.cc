@@ -1,4 +1,4 @@
-#include "src/engine/estimator.h"
+#include "src/engine/run_passes.h"
 
 #include "src/base/large_vectors.h"
 #include "src/engine/local_planes.h"
@@ -74,14 +74,14 @@ std::vector<bool> ForgetTextured(const GrayImage& image,
 
 }  // namespace
 
-void RunStage(Backend* backend,
-              const ViewSet& views,
-              const Schedule& schedule,
-              const StageSpec& stage,
-              const MethodParams& params,
-              const RunControl& control,
-              HypothesisMap* map,
-              PhaseTimes* times) {
+void RunPasses(Backend* backend,
+               const ViewSet& views,
+               const Schedule& schedule,
+               const StageSpec& stage,
+               const MethodParams& params,
+               const RunControl& control,
+               HypothesisMap* map,
+               PhaseTimes* times) {
   if (stage.passes.empty()) return;
   {
     PhaseTimer timer(times, "prepare");
