@@ -140,6 +140,7 @@ void MemoryMapStore::Write(int, int problem, StageOutput* output) {
   for (size_t i = 0; i < output->keep.size(); ++i) {
     if (!output->keep[i]) map.planes[i].distance = 0;
   }
+  map.Touch();
   Result& result = now_[problem];
   if (output->is_final) {
     result.map = std::move(map);

@@ -51,6 +51,7 @@ void MergeLevels(const HypothesisMap& carried,
           map->masks[i] = carried.masks[i];
         }
       });
+  map->Touch();
 }
 
 // Forgets the hypotheses of textured pixels; returns which.
@@ -69,6 +70,7 @@ std::vector<bool> ForgetTextured(const GrayImage& image,
       map->planes[i].distance = 0;
     }
   });
+  map->Touch();
   return textured;
 }
 
@@ -110,7 +112,6 @@ void RunPasses(Backend* backend,
   for (size_t i = 0; i < stage.passes.size(); ++i) {
     const Pass& pass = stage.passes[i];
     RunControl pass_control = control;
-    pass_control.continues = i > 0 && !stage.from_coarser;
     pass_control.progress = [&](double fraction) {
       if (control.progress) {
         control.progress((static_cast<double>(i) + fraction) / num_passes);

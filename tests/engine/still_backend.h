@@ -40,6 +40,7 @@ class StillBackend : public Backend {
     control.cancel->ThrowIfCancelled();
     if (control.progress) control.progress(0.5);
     map->planes.assign(map->planes.size(), {{0, 0, -1}, kStillDepth});
+    map->Touch();
   }
   std::vector<float> Score(const std::vector<PixelPlane>& planes,
                            const RunControl&) override {
