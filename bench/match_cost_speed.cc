@@ -7,7 +7,7 @@
 #include "bench/synthetic_views.h"
 #include "src/cpu/cpu_backend.h"
 #include "src/cpu/cpu_views.h"
-#include "src/engine/estimator.h"
+#include "src/engine/run_passes.h"
 
 #include <algorithm>
 #include <chrono>
@@ -75,14 +75,14 @@ void Record(const ViewSet& views) {
   HypothesisMap map(views.ref.camera.width, views.ref.camera.height);
   const CancelToken cancel;
   PhaseTimes times;
-  RunStage(backend.get(),
-           views,
-           schedule,
-           schedule.stages.front(),
-           MethodParams(),
-           {&cancel, nullptr},
-           &map,
-           &times);
+  RunPasses(backend.get(),
+            views,
+            schedule,
+            schedule.stages.front(),
+            MethodParams(),
+            {&cancel, nullptr},
+            &map,
+            &times);
 }
 
 // Seconds for all recorded requests; reference patches are made before.

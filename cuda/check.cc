@@ -1,6 +1,6 @@
 #include "cuda/check.h"
 
-#include "cuda/gpu_error.h"
+#include "src/engine/gpu_error.h"
 
 #include <string>
 

@@ -153,7 +153,7 @@ class CudaBackendImpl : public CudaBackend {
     UseDevice();
     seconds_.clear();
     PhaseTimer timer(&seconds_, "upload");
-    resident_ = nullptr;
+    resident_ = 0;
     num_evaluations_ = 0;
     random_key_ = views.random_key;
     planner_ = BandPlanner(options_.launch_seconds);
@@ -183,8 +183,7 @@ class CudaBackendImpl : public CudaBackend {
            const RunControl& control) override {
     UseDevice();
     SetPass(pass, pattern, &tables_);
-    const PixelState state =
-        Upload(*map, control.continues, ReadBy(pass.start));
+    const PixelState state = Upload(*map, ReadBy(pass.start));
     const int num_steps = pass.NumSteps();
     int step = 0;
     for (const Sweep& sweep : SweepsOf(pass, random_key_)) {
@@ -200,7 +199,8 @@ class CudaBackendImpl : public CudaBackend {
     costs_.Download(map->costs.data(), size, stream());
     masks_.Download(map->masks.data(), size, stream());
     Wait("copying maps from the card");
-    resident_ = map;
+    map->Touch();
+    resident_ = map->generation;
   }
 
   std::vector<uint32_t> ConsistentViews(const HypothesisMap& map,
@@ -208,7 +208,7 @@ class CudaBackendImpl : public CudaBackend {
                                         bool geometric,
                                         const RunControl& control) override {
     UseDevice();
-    const PixelState state = Upload(map, control.continues, Read::kPlanes);
+    const PixelState state = Upload(map, Read::kPlanes);
     std::vector<uint32_t> consistent(map.planes.size());
     consistent_.Reserve(consistent.size());
     for (const Sweep& sweep : ConsistencySweeps(filter, geometric)) {
@@ -261,7 +261,7 @@ class CudaBackendImpl : public CudaBackend {
     CheckCuda(cudaStreamSynchronize(stream()), doing);
   }
 
-  PixelState Upload(const HypothesisMap& map, bool continues, Read read) {
+  PixelState Upload(const HypothesisMap& map, Read read) {
     PhaseTimer timer(&seconds_, "upload");
     const size_t size = map.planes.size();
     PixelState state = {map.width,
@@ -270,14 +270,14 @@ class CudaBackendImpl : public CudaBackend {
                         costs_.Reserve(size),
                         masks_.Reserve(size),
                         nullptr};
-    if (!continues || resident_ != &map) {
+    if (resident_ == 0 || resident_ != map.generation) {
       if (read != Read::kNothing) planes_.Upload(map.planes, uploader());
       if (read == Read::kAll) {
         costs_.Upload(map.costs, uploader());
         masks_.Upload(map.masks, uploader());
       }
     }
-    resident_ = nullptr;
+    resident_ = 0;
     if (!map.priors.empty() && map.prior_level == 0) {
       priors_.Upload(map.priors, uploader());
       state.priors = priors_.data();
@@ -379,8 +379,8 @@ class CudaBackendImpl : public CudaBackend {
   DeviceBuffer<float> pixel_costs_;
   DeviceBuffer<uint32_t> masks_, consistent_;
   DeviceBuffer<unsigned long long> counter_;
-  // The map whose hypotheses the card holds as they are on the host.
-  const HypothesisMap* resident_ = nullptr;
+  // HypothesisMap::generation of what the card holds; 0: of nothing.
+  uint64_t resident_ = 0;
   uint64_t num_evaluations_ = 0;
   std::map<std::string, double> seconds_;
   double longest_launch_ = 0;

@@ -1,7 +1,7 @@
 // In place of the CUDA backend in a build without nvcc.
 #include "cuda/cuda_backend.h"
 #include "cuda/cuda_devices.h"
-#include "cuda/gpu_error.h"
+#include "src/engine/gpu_error.h"
 
 namespace hpm {
 namespace {

@@ -106,11 +106,11 @@ Json TimeVariant(const Variant& variant,
   HypothesisMap map(camera.width, camera.height);
   const Pass pass = {PassKind::kBasic, StartFrom::kRandom, 3, 0};
   const SamplingPattern pattern = MakeSamplingPattern(true, true);
-  backend->Run(pass, pattern, &map, {&cancel, nullptr, false});  // warm up
+  backend->Run(pass, pattern, &map, {&cancel, nullptr});  // warm up
   const std::map<std::string, double> before = backend->DeviceSeconds();
   const uint64_t count_before = backend->num_cost_evaluations();
   map = HypothesisMap(camera.width, camera.height);
-  backend->Run(pass, pattern, &map, {&cancel, nullptr, false});
+  backend->Run(pass, pattern, &map, {&cancel, nullptr});
   std::map<std::string, double> seconds = backend->DeviceSeconds();
   for (const auto& [name, value] : before) seconds[name] -= value;
   const double count =

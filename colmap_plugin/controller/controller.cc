@@ -2,13 +2,13 @@
 
 #include "colmap_plugin/controller/cut_maps.h"
 #include "colmap_plugin/controller/deep_images.h"
-#include "colmap_plugin/controller/devices.h"
+#include "colmap_plugin/controller/engine_problems.h"
+#include "colmap_plugin/controller/file_map_store.h"
 #include "colmap_plugin/controller/image_contents.h"
 #include "colmap_plugin/controller/run_budget.h"
+#include "colmap_plugin/controller/run_resources.h"
 #include "colmap_plugin/controller/run_statistics.h"
-#include "colmap_plugin/controller/stage_runner.h"
 #include "colmap_plugin/controller/thread_supply.h"
-#include "colmap_plugin/controller/worker_pool.h"
 #include "colmap_plugin/formats/atomic_file.h"
 #include "colmap_plugin/options/method_options.h"
 #include "colmap_plugin/workspace/far_origin.h"
@@ -19,13 +19,10 @@
 #include "colmap_plugin/workspace/source_problems.h"
 #include "colmap_plugin/workspace/stamp.h"
 #include "src/base/error.h"
-#include "src/cpu/cpu_backend.h"
-#include "src/engine/memory_plan.h"
+#include "src/engine/run_schedule.h"
 
 #include <algorithm>
 #include <chrono>
-#include <memory>
-#include <mutex>
 #include <set>
 #include <utility>
 
@@ -69,16 +66,6 @@ std::string WithoutGeometryNote(const Method& method) {
       method.priors == Priors::kRegions
           ? ", and surfaces with little texture get no priors"
           : "");
-}
-
-// Work of a stage of an image: iterations times pixels.
-double WorkOf(const StagePlan& plan, int stage, const StereoProblem& problem) {
-  const Camera camera = plan.CameraOf(stage, problem.ref_image);
-  int iterations = 0;
-  for (const Pass& pass : plan.stages()[stage].spec.passes) {
-    iterations += pass.num_iterations;
-  }
-  return static_cast<double>(iterations) * camera.width * camera.height;
 }
 
 // Behind the references, which come first.
@@ -152,10 +139,7 @@ PatchMatchController::PatchMatchController(const ControllerOptions& options,
 RunSummary PatchMatchController::Run() {
   const auto start = std::chrono::steady_clock::now();
   const ThreadSupply threads(options_.patch_match.num_threads, log_);
-  const int num_threads = threads.num_threads();
   const CpuTarget target = FindCpuTarget(options_.hpm.cpu_target);
-  std::vector<std::unique_ptr<Backend>> cpus;
-  cpus.push_back(MakeCpuBackend(target, num_threads));
 
   log_(LogLevel::kInfo, "Reading workspace...");
   Workspace workspace(options_.workspace, log_);
@@ -203,58 +187,8 @@ RunSummary PatchMatchController::Run() {
     log_(LogLevel::kWarning,
          WithoutGeometryNote(FindMethod(options_.hpm.method)));
   }
-  std::vector<std::unique_ptr<Backend>> gpus =
-      OpenGpus(options_,
-               LargestProblem(workspace, problems, geometric),
-               static_cast<int>(problems.size()),
-               num_threads,
-               RealGpus(),
-               log_);
-  const Backend& first = gpus.empty() ? *cpus.front() : *gpus.front();
-  MemoryNeeds needs = LargestNeeds(workspace, problems, first, geometric);
-  if (gpus.size() > 1) {
-    gpus.resize(
-        ImagesInMemory(needs, static_cast<int>(gpus.size()), MemoryLimit()));
-  } else if (gpus.empty() &&
-             CpuImagesInFlight(needs, num_threads, MemoryLimit()) > 1) {
-    cpus.push_back(MakeCpuBackend(target, num_threads));
-  }
-  const int num_decodes = DecodesAtOnce(needs);
-  const size_t num_in_flight = std::max(cpus.size(), gpus.size());
-  needs.working *= num_in_flight;
-  needs.inputs *= num_in_flight;
-  const std::string backend_name = first.Name();
-  InputCache inputs(workspace,
-                    PlanCacheBytes(CacheBytes(options_.patch_match.cache_size),
-                                   needs.working,
-                                   needs.inputs,
-                                   MemoryLimit()),
-                    num_decodes);
-  log_(LogLevel::kInfo,
-       fmt::format("{}{}, method {}, about {} MB of memory",
-                   backend_name,
-                   num_in_flight > 1
-                       ? fmt::format(", {} images in flight", num_in_flight)
-                       : "",
-                   options_.hpm.method,
-                   (needs.working + needs.inputs) >> 20));
-
-  WorkerPool workers(
-      std::move(cpus),
-      std::move(gpus),
-      [&](Backend* backend) {
-        return std::make_unique<StageRunner>(workspace,
-                                             problems,
-                                             schedule,
-                                             options_,
-                                             plan,
-                                             lock,
-                                             &inputs,
-                                             backend,
-                                             log_);
-      },
-      options_.hpm.device != "cuda",
-      log_);
+  const RunResources resources = OpenResources(
+      workspace, problems, options_, target, threads.num_threads(), log_);
   RunStatistics statistics;
   if (options_.hpm.overwrite) {
     lock.ThrowIfLost();
@@ -266,9 +200,25 @@ RunSummary PatchMatchController::Run() {
       if (problem.is_reference && !CanBeComputed(workspace, problem))
         statistics.AddFailure(workspace.ImageName(problem.ref_image));
     }
+    FileMapStore maps(workspace,
+                      problems,
+                      options_,
+                      plan,
+                      lock,
+                      resources.inputs.get(),
+                      &statistics,
+                      log_);
+    const RunSpec spec = {
+        schedule,
+        MakeMethodParams(options_),
+        MakeMapFilter(options_),
+        EngineProblems(workspace, problems, options_.random_seed)};
     try {
-      RunStages(
-          workspace, problems, plan, &inputs, &workers, stop, &statistics);
+      RunSchedule(spec,
+                  resources.inputs.get(),
+                  &maps,
+                  resources.workers.get(),
+                  Events(workspace, problems, plan, stop, &statistics));
       is_done = true;
     } catch (const UnreadableImage& error) {
       // Planned anew without it, so that all maps are those of a run that knew
@@ -303,7 +253,7 @@ RunSummary PatchMatchController::Run() {
   }
   RunSummary summary = statistics.Summarize(
       names,
-      backend_name,
+      resources.backend_name,
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start)
           .count());
   summary.num_fusable = CountFinalMaps(workspace, plan);
@@ -313,107 +263,42 @@ RunSummary PatchMatchController::Run() {
   return summary;
 }
 
-void PatchMatchController::RunStages(const Workspace& workspace,
-                                     const std::vector<StereoProblem>& problems,
-                                     const StagePlan& plan,
-                                     InputCache* inputs,
-                                     WorkerPool* workers,
-                                     const CancelToken& cancel,
-                                     RunStatistics* statistics) {
-  const int num_stages = static_cast<int>(plan.stages().size());
-  const int num_problems = static_cast<int>(problems.size());
-  // Images that are only sources fail by themselves: whoever reads their maps
-  // goes on without.
-  std::set<int> failed_sources;
-  double total_work = 0, done_work = 0;
-  for (int s = 0; s < num_stages; ++s) {
-    for (int p = 0; p < num_problems; ++p) {
-      if (plan.IsNeeded(s, p)) total_work += WorkOf(plan, s, problems[p]);
-    }
-  }
-
-  for (int s = 0; s < num_stages; ++s) {
-    const Stage& stage = plan.stages()[s];
-    const int num_needed = plan.CountNeeded(s);
-    inputs->StartStage(stage.spec.level);
-    std::vector<int> needed;
-    for (int p = 0; p < num_problems; ++p) {
-      if (plan.IsNeeded(s, p)) needed.push_back(p);
-    }
-    // Guards the statistics, the progress and what follows.
-    std::mutex mutex;
-    int number = 0;
-    workers->Run(needed, [&](StageRunner* runner, int p) {
-      cancel.ThrowIfCancelled();
-      const std::string& name = workspace.ImageName(problems[p].ref_image);
-      const double work = WorkOf(plan, s, problems[p]);
-      double counted = 0;  // of `work`, in done_work
-      ProgressEvent event = {stage.name, name, 0, num_needed, 0};
-      const auto count = [&](double fraction) {
-        const std::lock_guard<std::mutex> lock(mutex);
-        done_work += fraction * work - counted;
-        counted = fraction * work;
-        event.fraction = done_work / total_work;
-        if (fraction < 1) progress_(event);
-      };
-      bool has_failed;
-      {
-        const std::lock_guard<std::mutex> lock(mutex);
-        event.image_number = ++number;
-        has_failed = statistics->HasFailed(name) || failed_sources.count(p) > 0;
-      }
-      if (has_failed) return count(1);
-      const bool is_reference = problems[p].is_reference;
-      const std::string stage_name = plan.NameOf(s, problems[p].ref_image);
-      log_(LogLevel::kInfo,
-           fmt::format("Processing view {} / {} for {} ({})",
-                       event.image_number,
-                       num_needed,
-                       name,
-                       stage_name));
-      RunControl control;
-      control.cancel = &cancel;
-      control.progress = count;
-      try {
-        const StageResult result = runner->Run(s, p, control);
-        const std::lock_guard<std::mutex> lock(mutex);
-        // Not before: an image that cannot be decoded changes the plan.
-        if (!statistics->AnyWork() && plan.ReplacesForeignMaps()) {
-          log_(LogLevel::kWarning,
-               "maps made with other options, from other images, by another "
-               "version or by another program are computed anew");
-        }
-        statistics->Add(name,
-                        is_reference,
-                        stage,
-                        stage_name,
-                        plan.CameraOf(s, problems[p].ref_image),
-                        result);
-      } catch (const Error& error) {
-        if (error.code() != ErrorCode::kBadInput ||
-            dynamic_cast<const UnreadableImage*>(&error) != nullptr) {
-          const std::lock_guard<std::mutex> lock(mutex);
-          --number;
-          done_work -= counted;
-          throw;
-        }
-        log_(is_reference ? LogLevel::kError : LogLevel::kWarning,
-             error.what());
-        const std::lock_guard<std::mutex> lock(mutex);
-        if (is_reference) {
-          statistics->AddFailure(name);
-        } else {
-          failed_sources.insert(p);
-        }
-      }
-      count(1);
-    });
-    progress_({stage.name,
-               "",
-               num_needed,
-               num_needed,
-               total_work > 0 ? done_work / total_work : 1});
-  }
+RunEvents PatchMatchController::Events(
+    const Workspace& workspace,
+    const std::vector<StereoProblem>& problems,
+    const StagePlan& plan,
+    const CancelToken& cancel,
+    RunStatistics* statistics) const {
+  const auto name_of = [&](int problem) -> const std::string& {
+    return workspace.ImageName(problems[problem].ref_image);
+  };
+  RunEvents events;
+  events.cancel = &cancel;
+  events.started = [&, name_of](const RunProgress& at) {
+    const int image = problems[at.problem].ref_image;
+    log_(LogLevel::kInfo,
+         fmt::format("Processing view {} / {} for {} ({})",
+                     at.number,
+                     at.num_problems,
+                     name_of(at.problem),
+                     plan.NameOf(at.stage, image)));
+  };
+  events.progress = [&, name_of](const RunProgress& at) {
+    progress_({plan.stages()[at.stage].name,
+               at.problem < 0 ? "" : name_of(at.problem),
+               at.number,
+               at.num_problems,
+               at.fraction});
+  };
+  events.failed = [&, name_of, statistics](
+                      int, int problem, const Error& error) {
+    // Images that are only sources fail by themselves: whoever reads their maps
+    // goes on without.
+    const bool is_reference = problems[problem].is_reference;
+    log_(is_reference ? LogLevel::kError : LogLevel::kWarning, error.what());
+    if (is_reference) statistics->AddFailure(name_of(problem));
+  };
+  return events;
 }
 
 }  // namespace hpm

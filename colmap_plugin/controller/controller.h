@@ -46,10 +46,9 @@ struct RunSummary {
   std::string cpu_target;
 };
 
-class InputCache;
 class RunStatistics;
 class StagePlan;
-class WorkerPool;
+struct RunEvents;
 struct StereoProblem;
 
 class PatchMatchController {
@@ -67,13 +66,13 @@ class PatchMatchController {
   RunSummary Run();
 
  private:
-  void RunStages(const Workspace& workspace,
-                 const std::vector<StereoProblem>& problems,
-                 const StagePlan& plan,
-                 InputCache* inputs,
-                 WorkerPool* workers,
-                 const CancelToken& cancel,
-                 RunStatistics* statistics);
+  // What the log and the progress sink are told of a run. Keeps references to
+  // all arguments.
+  RunEvents Events(const Workspace& workspace,
+                   const std::vector<StereoProblem>& problems,
+                   const StagePlan& plan,
+                   const CancelToken& cancel,
+                   RunStatistics* statistics) const;
 
   ControllerOptions options_;
   LogSink log_;

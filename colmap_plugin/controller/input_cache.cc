@@ -74,9 +74,14 @@ std::vector<std::shared_ptr<const InverseDepthMap>> InputCache::InverseDepths(
 void InputCache::StartStage(int level) {
   const std::lock_guard<std::mutex> lock(mutex_);
   inputs_.EraseIf([&](Key key) {
-    return IsDepth(key) || (level != level_ && LevelOf(key) > 0);
+    return !IsDepth(key) && level != level_ && LevelOf(key) > 0;
   });
   level_ = level;
+}
+
+void InputCache::ForgetDepths() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  inputs_.EraseIf([](Key key) { return IsDepth(key); });
 }
 
 InputCache::Input InputCache::Get(

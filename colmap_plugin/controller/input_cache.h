@@ -4,7 +4,7 @@
 #pragma once
 
 #include "colmap_plugin/controller/stages.h"
-#include "src/base/error.h"
+#include "src/engine/image_store.h"
 #include "src/engine/lru_cache.h"
 #include "src/image/gray_image.h"
 #include "src/image/inverse_depth_map.h"
@@ -19,25 +19,6 @@
 
 namespace hpm {
 
-// An image file that only decoding found to be damaged. The plan of the run
-// counted on it.
-class UnreadableImage : public Error {
- public:
-  UnreadableImage(int image, const std::string& message)
-      : Error(ErrorCode::kBadInput, message), image_(image) {}
-  int image() const { return image_; }
-
- private:
-  int image_;
-};
-
-// At the size of the camera, halved as the stage wants it and `more_levels`
-// times more.
-struct ImageRequest {
-  int image = 0;
-  int more_levels = 0;
-};
-
 // 1/z of an image's maps, of the camera's size, at the pixel centres of the
 // camera halved `more_levels` times.
 struct DepthRequest {
@@ -47,22 +28,21 @@ struct DepthRequest {
   int more_levels = 0;
 };
 
-class InputCache {
+class InputCache : public ImageStore {
  public:
   // max_decodes: files that one caller may decode at once.
   InputCache(const Workspace& workspace, uint64_t max_bytes, int max_decodes);
 
-  // As many as there are requests. Throws UnreadableImage.
+  void StartStage(int level) override;
   std::vector<std::shared_ptr<const GrayImage>> Images(
-      const std::vector<ImageRequest>& requests);
+      const std::vector<ImageRequest>& requests) override;
 
   // Null where the maps are absent or damaged.
   std::vector<std::shared_ptr<const InverseDepthMap>> InverseDepths(
       const std::vector<DepthRequest>& requests);
 
-  // Forgets the depth maps of the stage before; images are halved `level` times
-  // from now on.
-  void StartStage(int level);
+  // When those of the stage before are of no use any more.
+  void ForgetDepths();
 
  private:
   using Input = std::shared_ptr<const void>;  // GrayImage or InverseDepthMap

@@ -1,6 +1,7 @@
 #include "colmap_plugin/controller/ray_convention.h"
 
 #include "src/base/error.h"
+#include "src/image/middle_pixel.h"
 
 #include <algorithm>
 #include <atomic>
@@ -158,27 +159,24 @@ InverseDepthMap ReadInverseDepths(const std::filesystem::path& depth_path,
                                   const Camera& camera,
                                   int more_levels) {
   const MapPair maps(depth_path, normal_path, camera);
-  const int factor = 1 << more_levels;
+  const MiddlePixel middle(more_levels);
   const Camera coarse = LevelCamera(camera, more_levels);
-  const auto middle_of = [&](int block, int size) {
-    return std::min(block * factor + (factor - 1) / 2, size - 1);
-  };
-  const auto center_of = [&](int block) {
-    return (static_cast<float>(block) + 0.5f) * static_cast<float>(factor) -
-           0.5f;
-  };
   const size_t size = static_cast<size_t>(coarse.width) * coarse.height;
   // Not filled here: each pixel has one in its middle.
   const std::unique_ptr<float[]> inverse(new float[size]);
   maps.ForEachPlane([&](int col, int row, const Plane& plane, float z) {
-    const int block_row = row / factor;
-    const int block_col = col / factor;
-    if (row != middle_of(block_row, camera.height) ||
-        col != middle_of(block_col, camera.width)) {
+    const int block_row = middle.BlockOf(row);
+    const int block_col = middle.BlockOf(col);
+    if (row != middle.Of(block_row, camera.height) ||
+        col != middle.Of(block_col, camera.width)) {
       return;
     }
-    if (factor > 1)
-      z = DepthAt(camera, plane, center_of(block_col), center_of(block_row));
+    if (more_levels > 0) {
+      z = DepthAt(camera,
+                  plane,
+                  middle.CenterOf(block_col),
+                  middle.CenterOf(block_row));
+    }
     inverse[static_cast<size_t>(block_row) * coarse.width + block_col] =
         plane.distance > 0 && std::isfinite(z) && z > 0 ? 1 / z : 0;
   });

@@ -19,12 +19,25 @@ uint64_t PeakMemoryBytes() {
 
 }  // namespace
 
-void RunStatistics::Add(const std::string& image,
+nlohmann::json ToJson(const StageResult& result) {
+  nlohmann::json json = {
+      {"valid_pixel_share", result.valid_pixel_share},
+      {"filter_losses", ToJson(result.losses)},
+      {"cost_evaluations_per_pixel", result.cost_evaluations_per_pixel},
+      {"seconds", result.seconds}};
+  if (!result.device_seconds.empty())
+    json["device_seconds"] = result.device_seconds;
+  return json;
+}
+
+bool RunStatistics::Add(const std::string& image,
                         bool is_reference,
                         const Stage& stage,
                         const std::string& stage_name,
                         const Camera& camera,
                         const StageResult& result) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const bool is_first = worked_on_.empty();
   const double size = static_cast<double>(camera.width) * camera.height;
   evaluations_ += result.cost_evaluations_per_pixel * size;
   if (is_reference) computed_.insert(image);
@@ -38,6 +51,17 @@ void RunStatistics::Add(const std::string& image,
   }
   for (const auto& [phase, time] : result.seconds) seconds_[phase] += time;
   images_[image][stage_name] = ToJson(result);
+  return is_first;
+}
+
+void RunStatistics::AddFailure(const std::string& image) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  failed_.insert(image);
+}
+
+bool RunStatistics::HasFailed(const std::string& image) const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return failed_.count(image) > 0;
 }
 
 RunSummary RunStatistics::Summarize(

@@ -2,9 +2,12 @@
 #pragma once
 
 #include "colmap_plugin/controller/controller.h"
-#include "colmap_plugin/controller/stage_runner.h"
+#include "colmap_plugin/controller/filter_losses.h"
+#include "colmap_plugin/controller/stages.h"
+#include "src/engine/run_passes.h"
 
 #include <map>
+#include <mutex>
 #include <set>
 #include <string>
 
@@ -12,25 +15,33 @@
 
 namespace hpm {
 
+// Of a stage of an image.
+struct StageResult {
+  double valid_pixel_share = 0;
+  double cost_evaluations_per_pixel = 0;
+  FilterLosses losses;        // of a final stage
+  PhaseTimes seconds;         // wall, per phase
+  PhaseTimes device_seconds;  // of a card, per kind of work
+};
+
+nlohmann::json ToJson(const StageResult& result);
+
+// Adding and asking about failures is for several threads at once, the rest is
+// for the end.
 class RunStatistics {
  public:
   // stage_name: as in StagePlan::NameOf(). Images that are only sources count
-  // for the work, not for the images.
-  void Add(const std::string& image,
+  // for the work, not for the images. Returns whether it is the first result.
+  bool Add(const std::string& image,
            bool is_reference,
            const Stage& stage,
            const std::string& stage_name,
            const Camera& camera,
            const StageResult& result);
-  void AddFailure(const std::string& image) { failed_.insert(image); }
-
-  bool HasFailed(const std::string& image) const {
-    return failed_.count(image) > 0;
-  }
+  void AddFailure(const std::string& image);
+  bool HasFailed(const std::string& image) const;
   bool AnyFailed() const { return !failed_.empty(); }
   bool AnyComputed() const { return !computed_.empty(); }
-  // Images that are only sources count here.
-  bool AnyWork() const { return !worked_on_.empty(); }
 
   // problem_images: names of all reference images of the run.
   RunSummary Summarize(const std::vector<std::string>& problem_images,
@@ -44,6 +55,7 @@ class RunStatistics {
                         const RunSummary& summary) const;
 
  private:
+  mutable std::mutex mutex_;
   nlohmann::json images_;
   std::set<std::string> computed_;
   std::set<std::string> worked_on_;  // these and sources

@@ -2,8 +2,6 @@
 
 #include "colmap_plugin/options/effective_options.h"
 
-#include <algorithm>
-
 namespace hpm {
 
 MethodParams MakeMethodParams(const ControllerOptions& given) {
@@ -35,14 +33,18 @@ ScheduleOptions MakeScheduleOptions(const ControllerOptions& given) {
   return schedule;
 }
 
-FilterParams MakeFilterParams(const PatchMatchStereoOptions& options,
-                              int num_srcs) {
+std::optional<MapFilter> MakeMapFilter(const ControllerOptions& options) {
   constexpr double kRadiansPerDegree = 3.14159265358979323846 / 180;
-  return {static_cast<float>(options.filter_min_ncc),
-          static_cast<float>(options.filter_min_triangulation_angle *
-                             kRadiansPerDegree),
-          static_cast<float>(options.filter_geom_consistency_max_cost),
-          std::min(options.filter_min_num_consistent, num_srcs)};
+  const PatchMatchStereoOptions& colmap = options.patch_match;
+  if (!colmap.filter) return std::nullopt;
+  MapFilter filter;
+  filter.params = {static_cast<float>(colmap.filter_min_ncc),
+                   static_cast<float>(colmap.filter_min_triangulation_angle *
+                                      kRadiansPerDegree),
+                   static_cast<float>(colmap.filter_geom_consistency_max_cost),
+                   colmap.filter_min_num_consistent};
+  filter.min_agreement = options.hpm.filter_min_agreement;
+  return filter;
 }
 
 }  // namespace hpm

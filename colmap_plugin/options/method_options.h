@@ -2,17 +2,17 @@
 #pragma once
 
 #include "colmap_plugin/options/options.h"
-#include "src/core/consistency_filter.h"
+#include "src/engine/run_spec.h"
 #include "src/engine/schedule.h"
+
+#include <optional>
 
 namespace hpm {
 
 MethodParams MakeMethodParams(const ControllerOptions& options);
 ScheduleOptions MakeScheduleOptions(const ControllerOptions& options);
 
-// num_srcs: images used besides the reference; COLMAP lowers
-// filter_min_num_consistent to it.
-FilterParams MakeFilterParams(const PatchMatchStereoOptions& options,
-                              int num_srcs);
+// None if the user wants none.
+std::optional<MapFilter> MakeMapFilter(const ControllerOptions& options);
 
 }  // namespace hpm

@@ -66,6 +66,7 @@ class CpuBackend : public Backend {
       if (step < num_steps && control.progress)
         control.progress(static_cast<double>(++step) / num_steps);
     }
+    map->Touch();
   }
 
   std::vector<float> Score(const std::vector<PixelPlane>& planes,

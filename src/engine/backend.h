@@ -18,9 +18,6 @@ namespace hpm {
 struct RunControl {
   const CancelToken* cancel;
   std::function<void(double)> progress;  // share of the pass that is done, 0..1
-  // The map is as this backend's last Run left it, but for its priors; a
-  // backend that holds a copy need not fetch it again.
-  bool continues = false;
 };
 
 class Backend {
@@ -45,7 +42,9 @@ class Backend {
   // and upsamples them itself.
   virtual bool UpsamplesPriors() const { return false; }
 
-  // Runs one pass in place. Throws Error(kInterrupted) when cancelled.
+  // Runs one pass in place and touches the map. A backend that holds the map's
+  // generation need not fetch it, here and in ConsistentViews(). Throws
+  // Error(kInterrupted) when cancelled.
   virtual void Run(const Pass& pass,
                    const SamplingPattern& pattern,
                    HypothesisMap* map,

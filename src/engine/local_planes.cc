@@ -115,6 +115,7 @@ void FitLocalPlanes(const Camera& camera,
                  &map->planes[static_cast<size_t>(row) * width]);
         }
       });
+  map->Touch();
 }
 
 }  // namespace hpm

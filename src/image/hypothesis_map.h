@@ -4,6 +4,7 @@
 
 #include "src/core/pixel_state.h"
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -28,6 +29,16 @@ struct HypothesisMap {
   // Halvings of the grid of `priors`; above 0 only for backends that upsample.
   int prior_level = 0;
 
+  // Names the present planes, costs and masks: whatever has the same number has
+  // the same contents, so a backend that holds them need not fetch them again.
+  // Whoever changes them calls Touch() afterwards; a copy keeps the number.
+  uint64_t generation = 0;  // 0: of no backend
+
+  void Touch() {
+    static std::atomic<uint64_t> last{0};
+    generation = ++last;
+  }
+
   HypothesisMap() = default;
   HypothesisMap(int w, int h) { Reset(w, h); }
 
@@ -43,6 +54,7 @@ struct HypothesisMap {
     priors.clear();
     unexplained.clear();
     prior_level = 0;
+    Touch();
   }
   void Reset(int w, int h) {
     planes.clear();

@@ -70,6 +70,7 @@ void EmulatedBackend::Run(const Pass& pass,
     control.cancel->ThrowIfCancelled();
     RunSweep(sweep, state, nullptr);
   }
+  map->Touch();
 }
 
 std::vector<uint32_t> EmulatedBackend::ConsistentViews(

@@ -2,9 +2,9 @@
 // a card adds to this is its own rounding and its hardware.
 #include "src/core/sampling_pattern.h"
 #include "src/cpu/cpu_backend.h"
-#include "src/engine/estimator.h"
 #include "tests/cuda/emulated_backend.h"
 #include "tests/cuda/test_problem.h"
+#include "tests/engine/estimate.h"
 
 #include <cmath>
 #include <cstring>
@@ -170,36 +170,29 @@ TEST_F(EmulationTest, PartialStartsAndScoresGiveTheBytesOfTheCpuBackend) {
   ExpectSameBytes(results[0], results[1]);
 }
 
-// A whole method through the engine, priors of two levels upsampled by the
-// backend.
-TEST_F(EmulationTest, AMethodWithPriorsGivesTheBytesOfTheCpuBackend) {
-  const ViewSet views = MakeViews("low_texture_wall", 75, 58);
-  ScheduleOptions options;
-  options.method = "hpm";
-  options.num_levels = 3;
-  options.num_iterations = 2;
-  options.num_geom_iterations = 1;
-  options.num_geom_passes = 1;
-  const Schedule schedule = MakeSchedule(options);
-  EmulatedBackend emulated({EmulatedCost::kCore, 3, 16});
-  const auto cpu = MakeCpuBackend("scalar", 2);
-  std::vector<HypothesisMap> maps;
-  for (Backend* backend : {static_cast<Backend*>(&emulated), cpu.get()}) {
-    HypothesisMap map(75, 58);
-    PhaseTimes times;
-    for (const StageSpec& stage : schedule.stages) {
-      RunStage(backend,
-               views,
-               schedule,
-               stage,
-               MethodParams(),
-               control_,
-               &map,
-               &times);
-    }
-    maps.push_back(std::move(map));
+// Whole methods through the engine: priors that the backend upsamples, halved
+// images, levels that are merged, mined regions, maps of all sources.
+TEST_F(EmulationTest, WholeRunsGiveTheBytesOfTheCpuBackend) {
+  SceneOptions scene;
+  scene.num_views = 3;
+  scene.width = 57;
+  scene.height = 42;
+  const auto views = RenderViews(MakeScene("low_texture_wall", scene), 2);
+  for (const char* method : {"hpm", "acmm", "hpm_plus"}) {
+    ScheduleOptions options;
+    options.method = method;
+    options.num_levels = 2;
+    options.num_iterations = 2;
+    options.num_geom_iterations = 1;
+    options.num_geom_passes = 1;
+    WorkerPool emulated(std::make_unique<EmulatedBackend>(
+        EmulationOptions{EmulatedCost::kCore, 3, 16}));
+    WorkerPool cpu(MakeCpuBackend("scalar", 2));
+    const auto a = EstimateScene(&emulated, views, options, 2);
+    const auto b = EstimateScene(&cpu, views, options, 2);
+    for (int i = 0; i < 2; ++i)
+      EXPECT_TRUE(SameMaps(a[i], b[i])) << method << ", view " << i;
   }
-  EXPECT_TRUE(SameMaps(maps[0], maps[1]));
 }
 
 // Shares of pixels whose depth differs by more than 1 %, beside those where

@@ -1,10 +1,10 @@
 // Tests that need a card; without one each is skipped and says so.
 #include "cuda/cuda_backend.h"
 #include "cuda/cuda_devices.h"
-#include "cuda/gpu_error.h"
 #include "cuda/self_test.h"
 #include "src/core/sampling_pattern.h"
 #include "src/cpu/cpu_backend.h"
+#include "src/engine/gpu_error.h"
 #include "tests/cuda/emulated_backend.h"
 #include "tests/cuda/test_problem.h"
 
@@ -55,14 +55,12 @@ class GpuTest : public testing::Test {
     for (size_t i = 0; i < map.priors.size(); i += 7) {
       map.priors[i].distance = 0;
     }
-    RunControl continued = control_;
-    continued.continues = true;
-    backend->Run(kPrior, pattern_, &map, continued);
+    backend->Run(kPrior, pattern_, &map, control_);
     map.priors = {};
     result.prior = map;
-    backend->Run(kGeometric, pattern_, &map, continued);
+    backend->Run(kGeometric, pattern_, &map, control_);
     result.geometric = map;
-    backend->Run(HalfPass(), pattern_, &map, continued);
+    backend->Run(HalfPass(), pattern_, &map, control_);
     result.half = map;
     result.consistent =
         backend->ConsistentViews(map, {0.1f, 0.05f, 1.0f, 2}, true, control_);
@@ -106,7 +104,7 @@ class GpuTest : public testing::Test {
   inline static std::vector<RenderedView> rendered_;
   const SamplingPattern pattern_ = MakeSamplingPattern(true, true);
   CancelToken cancel_;
-  RunControl control_ = {&cancel_, nullptr, false};
+  RunControl control_ = {&cancel_, nullptr};
 };
 
 class EveryFormat : public GpuTest,
@@ -251,7 +249,7 @@ TEST_F(GpuTest, StopsWhenCancelled) {
   EXPECT_EQ(code, ErrorCode::kInterrupted);
   // It goes on afterwards.
   CancelToken fresh;
-  gpu->Run(kBasic, pattern_, &map, {&fresh, nullptr, false});
+  gpu->Run(kBasic, pattern_, &map, {&fresh, nullptr});
 }
 
 TEST_F(GpuTest, TooLargeAProblemIsAnErrorThatLeavesTheCardUsable) {

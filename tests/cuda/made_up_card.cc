@@ -31,6 +31,7 @@ Failure failure;
 bool is_lost = false;
 bool is_idle = false;
 int num_live = 0;
+size_t num_sent = 0;
 cudaError_t last_error = cudaSuccess;
 
 int& CountOf(CardCall kind) { return num_calls[static_cast<int>(kind)]; }
@@ -132,9 +133,12 @@ void StartCounting() {
   num_calls = {};
   failure = {};
   is_lost = false;
+  num_sent = 0;
 }
 
 int CallsOf(CardCall kind) { return CountOf(kind); }
+
+size_t BytesSent() { return num_sent; }
 
 void LetCallFail(CardCall kind, int number, cudaError_t error, bool for_good) {
   StartCounting();
@@ -273,9 +277,16 @@ cudaError_t cudaDestroyTextureObject(cudaTextureObject_t) {
   return cudaSuccess;
 }
 
-cudaError_t cudaMemcpyAsync(
-    void* to, const void* from, size_t size, cudaMemcpyKind, cudaStream_t) {
+cudaError_t cudaMemcpyAsync(void* to,
+                            const void* from,
+                            size_t size,
+                            cudaMemcpyKind kind,
+                            cudaStream_t) {
   const cudaError_t status = Called(CardCall::kAny);
+  if (kind == cudaMemcpyHostToDevice) {
+    const std::lock_guard<std::mutex> lock(mutex);
+    num_sent += size;
+  }
   if (status == cudaSuccess) std::memcpy(to, from, size);
   return status;
 }

@@ -3,6 +3,8 @@
 // tests as it is, and every call of the runtime can be made to fail.
 #pragma once
 
+#include <cstddef>
+
 #include <cuda_runtime_api.h>
 
 namespace hpm {
@@ -17,6 +19,8 @@ enum class CardCall {
 // All calls are numbered by kind, from 0, since the last of these.
 void StartCounting();
 int CallsOf(CardCall kind);
+// Copied from the host to the card since then.
+size_t BytesSent();
 
 // The `number`-th call of this kind from now on returns `error`, and with
 // `for_good` every later one of any kind too.

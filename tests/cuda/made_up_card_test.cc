@@ -2,11 +2,12 @@
 #include "tests/cuda/made_up_card.h"
 
 #include "cuda/cuda_backend.h"
-#include "cuda/gpu_error.h"
 #include "cuda/self_test.h"
 #include "src/core/sampling_pattern.h"
 #include "src/cpu/cpu_backend.h"
+#include "src/engine/gpu_error.h"
 #include "tests/cuda/test_problem.h"
+#include "tests/engine/estimate.h"
 
 #include <cstring>
 #include <memory>
@@ -61,36 +62,38 @@ class MadeUpCardTest : public testing::Test {
   Result RunAll(Backend* backend) {
     backend->SetViews(views_, MethodParams());
     HypothesisMap map(kWidth, kHeight);
-    const auto run = [&](PassKind kind, StartFrom start, bool continues) {
+    const auto run = [&](PassKind kind, StartFrom start) {
       const Pass pass = {kind, start, 1, pass_id_++};
-      backend->Run(pass, pattern_, &map, {&cancel_, nullptr, continues});
+      backend->Run(pass, pattern_, &map, {&cancel_, nullptr});
     };
     pass_id_ = 0;
-    run(PassKind::kBasic, StartFrom::kRandom, false);
+    run(PassKind::kBasic, StartFrom::kRandom);
     map.priors = map.planes;
     for (size_t i = 0; i < map.priors.size(); i += 7)
       map.priors[i].distance = 0;
-    run(PassKind::kPrior, StartFrom::kPrior, true);
+    run(PassKind::kPrior, StartFrom::kPrior);
     map.priors = {};
     for (size_t i = 0; i < map.planes.size(); ++i) {
       if (i % 5 == 0) map.planes[i].distance = 0;
       map.costs[i] = 0.0015f * static_cast<float>(i * 7919 % 1000);
     }
-    run(PassKind::kBasic, StartFrom::kMissing, false);
-    run(PassKind::kGeometric, StartFrom::kCurrent, true);
+    map.Touch();
+    run(PassKind::kBasic, StartFrom::kMissing);
+    run(PassKind::kGeometric, StartFrom::kCurrent);
     for (size_t i = 0; i < map.planes.size(); i += 3) {
       map.planes[i].distance *= 1.01f;
       map.costs[i] = 0.5f;
     }
-    run(PassKind::kGeometric, StartFrom::kCurrent, false);
-    run(PassKind::kGeometric, StartFrom::kStored, true);
+    map.Touch();
+    run(PassKind::kGeometric, StartFrom::kCurrent);
+    run(PassKind::kGeometric, StartFrom::kStored);
     Result result;
     std::vector<PixelPlane> planes;
     for (int i = 0; i < kWidth * kHeight; i += 2)
       planes.push_back({i % kWidth, i / kWidth, map.planes[i]});
     result.scores = backend->Score(planes, {&cancel_, nullptr});
     result.consistent = backend->ConsistentViews(
-        map, {0.1f, 0.05f, 1.0f, 2}, true, {&cancel_, nullptr, true});
+        map, {0.1f, 0.05f, 1.0f, 2}, true, {&cancel_, nullptr});
     result.map = map;
     result.num_evaluations = backend->num_cost_evaluations();
     return result;
@@ -111,6 +114,54 @@ TEST_F(MadeUpCardTest, GivesTheBytesOfTheScalarCpuBackend) {
     ExpectSame(RunAll(card.get()), expected);
     ExpectSame(RunAll(card.get()), expected);  // with what is left from before
   }
+}
+
+// Whole methods: maps that the engine merges, fits and hands from stage to
+// stage on the host between passes on the card.
+TEST_F(MadeUpCardTest, WholeRunsGiveTheBytesOfTheScalarCpuBackend) {
+  SceneOptions scene;
+  scene.num_views = 3;
+  scene.width = 31;
+  scene.height = 22;
+  const auto views = RenderViews(MakeScene("low_texture_wall", scene), 1);
+  for (const char* method : {"hpm", "acmm", "hpm_plus"}) {
+    ScheduleOptions options;
+    options.method = method;
+    options.num_levels = 2;
+    options.num_iterations = 1;
+    options.num_geom_iterations = 1;
+    options.num_geom_passes = 2;
+    WorkerPool card(Make());
+    WorkerPool cpu(MakeCpuBackend("scalar", 1));
+    const auto a = EstimateScene(&card, views, options, 2);
+    const auto b = EstimateScene(&cpu, views, options, 2);
+    for (int i = 0; i < 2; ++i) {
+      EXPECT_TRUE(SameBytes(a[i].planes, b[i].planes)) << method << i;
+      EXPECT_TRUE(SameBytes(a[i].costs, b[i].costs)) << method << i;
+      EXPECT_TRUE(SameBytes(a[i].masks, b[i].masks)) << method << i;
+    }
+  }
+}
+
+// What the card made itself need not come back to it for the filter; what the
+// host changed since must.
+TEST_F(MadeUpCardTest, OnlyMapsThatTheHostChangedAreSentAgain) {
+  const auto card = Make();
+  card->SetViews(views_, MethodParams());
+  HypothesisMap map(kWidth, kHeight);
+  const RunControl control = {&cancel_, nullptr};
+  const FilterParams filter = {0.1f, 0.05f, 1.0f, 2};
+  const size_t plane_bytes = map.planes.size() * sizeof(Plane);
+  card->Run(kBasic, pattern_, &map, control);
+  StartCounting();
+  const auto consistent = card->ConsistentViews(map, filter, true, control);
+  EXPECT_LT(BytesSent(), plane_bytes);
+  EXPECT_EQ(card->ConsistentViews(map, filter, true, control), consistent);
+  card->Run(kGeometric, pattern_, &map, control);
+  map.Touch();
+  StartCounting();
+  card->ConsistentViews(map, filter, true, control);
+  EXPECT_GE(BytesSent(), plane_bytes);
 }
 
 // Whichever allocation it is, the error says so, nothing is lost to others, and

@@ -42,9 +42,9 @@ void ExpectAccurate(const std::string& target,
                     double max_depth_error) {
   const std::vector<RenderedView> views =
       RenderViews(MakeScene(scene, size), 3);
-  const auto backend = MakeCpuBackend(target, 2);
+  WorkerPool workers(MakeCpuBackend(target, 2));
   const std::vector<HypothesisMap> maps =
-      EstimateScene(backend.get(), views, method, num_maps);
+      EstimateScene(&workers, views, method, num_maps);
   MapErrors mean = {0, 0};
   for (int i = 0; i < num_maps; ++i) {
     ExpectSound(maps[i], views[i].camera);

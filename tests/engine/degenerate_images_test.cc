@@ -63,13 +63,13 @@ class EveryMethod : public testing::TestWithParam<std::string> {
     options.num_geom_iterations = 1;
     options.num_geom_passes = 1;
     options.num_levels = num_levels;
-    const auto maps = EstimateScene(backend_.get(), views, options, num_views);
+    const auto maps = EstimateScene(&workers_, views, options, num_views);
     for (int i = 0; i < num_views; ++i) {
       ExpectSound(maps[i], views[i].camera);
     }
   }
 
-  std::unique_ptr<Backend> backend_ = MakeCpuBackend("auto", 2);
+  WorkerPool workers_{MakeCpuBackend("auto", 2)};
 };
 INSTANTIATE_TEST_SUITE_P(Methods,
                          EveryMethod,
@@ -122,7 +122,7 @@ TEST_P(EveryMethod, SourcesThatSeeNothingGiveSoundMaps) {
   views[2].camera.R = {{-1, 0, 0, 0, 1, 0, 0, 0, -1}};  // looks back
   ScheduleOptions options;
   options.method = GetParam();
-  const auto maps = EstimateScene(backend_.get(), views, options, 1);
+  const auto maps = EstimateScene(&workers_, views, options, 1);
   ExpectSound(maps[0], views[0].camera);
 }
 

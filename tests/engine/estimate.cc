@@ -1,8 +1,10 @@
 #include "tests/engine/estimate.h"
 
+#include "src/engine/memory_stores.h"
+#include "src/engine/run_schedule.h"
+
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <utility>
 
 #include <gtest/gtest.h>
@@ -10,19 +12,20 @@
 namespace hpm {
 namespace {
 
-std::shared_ptr<const InverseDepthMap> InverseDepth(const HypothesisMap& map,
-                                                    const Camera& camera) {
-  std::vector<float> inverse;
-  for (int row = 0; row < map.height; ++row) {
-    for (int col = 0; col < map.width; ++col) {
-      inverse.push_back(1 / DepthAt(camera,
-                                    map.planes[inverse.size()],
-                                    static_cast<float>(col),
-                                    static_cast<float>(row)));
-    }
+// All views are estimated until the last stage reads their maps.
+class FirstMaps : public MemoryMapStore {
+ public:
+  FirstMaps(const RunSpec& spec, int num_final)
+      : MemoryMapStore(spec.problems),
+        last_stage_(static_cast<int>(spec.schedule.stages.size()) - 1),
+        num_final_(num_final) {}
+  bool IsNeeded(int stage, int problem) const override {
+    return stage < last_stage_ || problem < num_final_;
   }
-  return std::make_shared<const InverseDepthMap>(InverseDepthMap::Of(inverse));
-}
+
+ private:
+  const int last_stage_, num_final_;
+};
 
 double Median(std::vector<double> values) {
   if (values.empty()) return NAN;
@@ -34,72 +37,42 @@ double Median(std::vector<double> values) {
 
 }  // namespace
 
-View AsView(const RenderedView& rendered) {
-  return {rendered.camera,
-          std::make_shared<const GrayImage>(GrayImage{
-              rendered.camera.width, rendered.camera.height, rendered.grey}),
-          nullptr};
-}
-
-std::vector<HypothesisMap> EstimateScene(Backend* backend,
-                                         const std::vector<RenderedView>& views,
-                                         const ScheduleOptions& options,
-                                         int num_final) {
-  std::vector<Problem> problems;
+RunSpec SceneSpec(const std::vector<RenderedView>& views,
+                  const ScheduleOptions& options) {
+  RunSpec spec;
+  spec.schedule = MakeSchedule(options);
+  spec.params = DefaultParams(FindMethod(options.method));
   for (size_t i = 0; i < views.size(); ++i) {
     const auto [nearest, furthest] = std::minmax_element(
         views[i].truth.depth.begin(), views[i].truth.depth.end());
     Problem problem;
-    problem.views.ref = AsView(views[i]);
-    problem.views.depth_min = 0.7f * *nearest;
-    problem.views.depth_max = 1.3f * *furthest;
-    problem.views.random_key = i;
+    problem.image = static_cast<int>(i);
+    problem.camera = views[i].camera;
+    problem.depth_min = 0.7f * *nearest;
+    problem.depth_max = 1.3f * *furthest;
+    problem.random_key = i;
     for (size_t j = 0; j < views.size(); ++j) {
-      if (j == i) continue;
-      problem.sources.push_back(static_cast<int>(j));
-      problem.views.srcs.push_back(AsView(views[j]));
+      if (j != i)
+        problem.sources.push_back({static_cast<int>(j), views[j].camera, 0});
     }
-    problems.push_back(std::move(problem));
+    spec.problems.push_back(std::move(problem));
   }
-  return EstimateProblems(backend, std::move(problems), options, num_final);
+  return spec;
 }
 
-std::vector<HypothesisMap> EstimateProblems(Backend* backend,
-                                            std::vector<Problem> problems,
-                                            const ScheduleOptions& options,
-                                            int num_final) {
-  const Schedule schedule = MakeSchedule(options);
-  const CancelToken cancel;
-  const RunControl control = {&cancel, nullptr};
-  PhaseTimes times;
+std::vector<HypothesisMap> EstimateScene(WorkerPool* workers,
+                                         const std::vector<RenderedView>& views,
+                                         const ScheduleOptions& options,
+                                         int num_final) {
+  std::vector<GrayImage> pictures;
+  for (const RenderedView& view : views)
+    pictures.push_back({view.camera.width, view.camera.height, view.grey});
+  MemoryImageStore images(std::move(pictures));
+  const RunSpec spec = SceneSpec(views, options);
+  FirstMaps store(spec, num_final);
+  RunSchedule(spec, &images, &store, workers, {});
   std::vector<HypothesisMap> maps;
-  for (const Problem& problem : problems) {
-    const Camera& camera = problem.views.ref.camera;
-    maps.emplace_back(camera.width, camera.height);
-  }
-  for (const StageSpec& stage : schedule.stages) {
-    const bool last = &stage == &schedule.stages.back();
-    std::vector<HypothesisMap> next = maps;
-    for (size_t i = 0; i < problems.size(); ++i) {
-      if (last && static_cast<int>(i) >= num_final) break;
-      ViewSet& views = problems[i].views;
-      for (size_t k = 0; k < views.srcs.size(); ++k) {
-        if (!stage.geometric) continue;
-        views.srcs[k].inverse_depth =
-            InverseDepth(maps[problems[i].sources[k]], views.srcs[k].camera);
-      }
-      RunStage(backend,
-               views,
-               schedule,
-               stage,
-               DefaultParams(FindMethod(options.method)),
-               control,
-               &next[i],
-               &times);
-    }
-    maps = std::move(next);
-  }
-  maps.resize(num_final);
+  for (int i = 0; i < num_final; ++i) maps.push_back(*store.map(i));
   return maps;
 }
 

@@ -2,33 +2,26 @@
 // against the truth.
 #pragma once
 
-#include "src/engine/estimator.h"
+#include "src/engine/run_spec.h"
+#include "src/engine/worker_pool.h"
+#include "src/image/hypothesis_map.h"
 #include "tests/scenes/render.h"
 
 #include <vector>
 
 namespace hpm {
 
-View AsView(const RenderedView& rendered);
+// Every view in turn is the reference of all others. Depths may lie within 30 %
+// around the true ones of each view.
+RunSpec SceneSpec(const std::vector<RenderedView>& views,
+                  const ScheduleOptions& options);
 
-// Every view in turn is the reference of all others. `stages` run one after the
-// other, each over all views; the last one only over the first `num_final`.
-// Depths may lie within 30 % around the true ones of each view.
-std::vector<HypothesisMap> EstimateScene(Backend* backend,
+// The stages of the method run one after the other, each over all views; the
+// last one only over the first `num_final`, whose maps are returned.
+std::vector<HypothesisMap> EstimateScene(WorkerPool* workers,
                                          const std::vector<RenderedView>& views,
                                          const ScheduleOptions& options,
                                          int num_final);
-
-// The same for given problems; stage by stage, the sources' depth is taken from
-// the maps of the views whose number is in sources[i].
-struct Problem {
-  ViewSet views;
-  std::vector<int> sources;  // problem of each source view
-};
-std::vector<HypothesisMap> EstimateProblems(Backend* backend,
-                                            std::vector<Problem> problems,
-                                            const ScheduleOptions& options,
-                                            int num_final);
 
 // Medians over all pixels with a true depth.
 struct MapErrors {

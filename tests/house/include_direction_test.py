@@ -9,7 +9,7 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SUFFIXES = {".h", ".cc", ".cu", ".cuh"}
-OUR_FOLDERS = ("src", "cuda", "colmap_plugin", "bench", "tests")
+OUR_FOLDERS = ("src", "cuda", "colmap_plugin", "bench", "tests", "examples")
 
 BASE = ("src/base",)
 CORE = ("src/core",)
@@ -38,6 +38,7 @@ ALLOWED = {
     "colmap_plugin/in_colmap": CONTROLLER + ("colmap_plugin/tool",),
     "colmap_plugin/wrapper": (),
     "bench": EVERYTHING,
+    "examples": LIBRARY + ("src/cpu",),
     "tests": EVERYTHING,
 }
 

@@ -52,6 +52,13 @@ cmake -S "$work/source" -B "$work/consumer" -G Ninja -DCMAKE_PREFIX_PATH="$prefi
 cmake --build "$work/consumer" >>"$work/consumer.log" 2>&1 || { grep -A 5 -E 'error|FAILED' "$work/consumer.log" | head -n 30; fail "building the consumer or the headers alone"; }
 "$work/consumer/consumer" || fail "running the consumer"
 
+echo "== the examples"
+cmake -S ../../examples -B "$work/examples" -G Ninja -DCMAKE_PREFIX_PATH="$prefix" \
+  -DCMAKE_BUILD_TYPE=Debug >"$work/examples.log" 2>&1 || { tail "$work/examples.log"; fail "configuring the examples"; }
+cmake --build "$work/examples" >>"$work/examples.log" 2>&1 ||
+  { grep -A 5 -E 'error|FAILED' "$work/examples.log" | head -n 30; fail "building the examples"; }
+"$work/examples/densify_three_images" || fail "running the example"
+
 echo "== the Debian package"
 command -v dpkg-shlibdeps >/dev/null || { echo "no dpkg-dev here, the package is left out"; exit 0; }
 cpack --config "$build/CPackConfig.cmake" -G DEB -B "$work/deb" >"$work/cpack.log" 2>&1 ||

@@ -2,11 +2,9 @@
 #include "colmap_plugin/controller/devices.h"
 
 #include "colmap_plugin/controller/run_budget.h"
-#include "colmap_plugin/controller/worker_pool.h"
-#include "cuda/gpu_error.h"
 #include "src/cpu/cpu_backend.h"
+#include "src/engine/gpu_error.h"
 
-#include <mutex>
 #include <set>
 
 #include <gmock/gmock.h>
@@ -200,64 +198,6 @@ TEST(CpuImagesInFlight, ASecondImageOnlyWhereItCostsLittle) {
   EXPECT_EQ(CpuImagesInFlight(small, 4, 300 * mib), 1);
   const MemoryNeeds large = {500 * mib, 50 * mib};
   EXPECT_EQ(CpuImagesInFlight(large, 4, 100000 * mib), 1);
-}
-
-// The pool never looks into its runners, so there are none here.
-class WorkerPoolTest : public testing::Test {
- protected:
-  WorkerPool MakePool(int num_gpus, bool may_fall_back) {
-    std::vector<std::unique_ptr<Backend>> gpus;
-    for (int i = 0; i < num_gpus; ++i) {
-      gpus.push_back(std::make_unique<MadeUpGpu>(i, true));
-    }
-    std::vector<std::unique_ptr<Backend>> cpus;
-    cpus.push_back(MakeCpuBackend("auto", 1));
-    return WorkerPool(
-        std::move(cpus),
-        std::move(gpus),
-        [](Backend*) { return nullptr; },
-        may_fall_back,
-        [this](LogLevel, const std::string& line) { lines_.push_back(line); });
-  }
-  std::vector<std::string> lines_;
-};
-
-TEST_F(WorkerPoolTest, WhenAllGpusGiveUpTheCpuGoesOn) {
-  WorkerPool pool = MakePool(2, true);
-  std::mutex mutex;
-  int num_refused = 0;
-  std::vector<int> done;
-  const auto compute = [&](StageRunner*, int problem) {
-    const std::lock_guard<std::mutex> lock(mutex);
-    if (problem == 3 && num_refused < 2) {
-      ++num_refused;
-      throw GpuError(ErrorCode::kOutOfResources, "out of memory");
-    }
-    done.push_back(problem);
-  };
-  pool.Run({0, 1, 2, 3, 4, 5}, compute);
-  EXPECT_THAT(done, testing::UnorderedElementsAre(0, 1, 2, 3, 4, 5));
-  EXPECT_THAT(lines_,
-              ElementsAre(HasSubstr("fewer images"), HasSubstr("the CPU")));
-  pool.Run({6, 7}, compute);  // the next stage
-  EXPECT_EQ(done.size(), 8u);
-}
-
-TEST_F(WorkerPoolTest, WithoutFallBackTheLastGpuThrows) {
-  WorkerPool pool = MakePool(2, false);
-  const auto compute = [](StageRunner*, int) {
-    throw GpuError(ErrorCode::kDevice, "broken");
-  };
-  EXPECT_THROW(pool.Run({0, 1, 2}, compute), GpuError);
-}
-
-TEST_F(WorkerPoolTest, AFullDiskIsNoReasonToGiveAGpuUp) {
-  WorkerPool pool = MakePool(2, true);
-  const auto compute = [](StageRunner*, int) {
-    throw Error(ErrorCode::kOutOfResources, "disk full");
-  };
-  EXPECT_THROW(pool.Run({0, 1, 2}, compute), Error);
-  EXPECT_TRUE(lines_.empty());
 }
 
 }  // namespace

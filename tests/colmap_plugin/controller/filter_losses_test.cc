@@ -1,6 +1,6 @@
 #include "colmap_plugin/controller/filter_losses.h"
 
-#include "colmap_plugin/controller/needed_views.h"
+#include "src/engine/needed_views.h"
 
 #include <cmath>
 

@@ -226,7 +226,7 @@ TEST_F(InputCacheTest, DepthIsReadOnceUntilForgotten) {
   const auto first = Depth(&cache, files);
   std::filesystem::remove(files.depth);
   EXPECT_EQ(Depth(&cache, files), first);
-  cache.StartStage(0);
+  cache.ForgetDepths();
   EXPECT_EQ(Depth(&cache, files), nullptr);
 }
 

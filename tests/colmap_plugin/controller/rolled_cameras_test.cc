@@ -40,7 +40,7 @@ class RolledCameras : public testing::Test {
     options.method = "nesp";
     options.num_iterations = 3;
     options.num_geom_passes = 0;
-    return EstimateScene(backend_.get(), views, options, kNumRefs);
+    return EstimateScene(&workers_, views, options, kNumRefs);
   }
 
   // Distances to the true plane of the points that fusion makes of depth maps.
@@ -72,7 +72,7 @@ class RolledCameras : public testing::Test {
     return *middle;
   }
 
-  std::unique_ptr<Backend> backend_ = MakeCpuBackend("auto", 2);
+  WorkerPool workers_{MakeCpuBackend("auto", 2)};
   std::unique_ptr<TestScene> scene_;
   std::vector<RenderedView> views_;
 };

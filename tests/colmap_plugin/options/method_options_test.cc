@@ -45,18 +45,17 @@ TEST(MethodOptions, WithoutGeometricConsistencyThereAreNoGeometricPasses) {
 }
 
 TEST(MethodOptions, FilterAngleIsInRadians) {
-  PatchMatchStereoOptions options;
-  options.filter_min_triangulation_angle = 90;
-  EXPECT_NEAR(
-      MakeFilterParams(options, 9).min_triangulation_angle, 1.5707963, 1e-6);
+  ControllerOptions options;
+  options.patch_match.filter_min_triangulation_angle = 90;
+  const std::optional<MapFilter> filter = MakeMapFilter(options);
+  ASSERT_TRUE(filter);
+  EXPECT_NEAR(filter->params.min_triangulation_angle, 1.5707963, 1e-6);
 }
 
-// As COLMAP does for images with few sources.
-TEST(MethodOptions, FilterAsksForNoMoreViewsThanThereAre) {
-  PatchMatchStereoOptions options;
-  options.filter_min_num_consistent = 4;
-  EXPECT_EQ(MakeFilterParams(options, 9).min_num_consistent, 4);
-  EXPECT_EQ(MakeFilterParams(options, 2).min_num_consistent, 2);
+TEST(MethodOptions, WithoutFilterThereIsNone) {
+  ControllerOptions options;
+  options.patch_match.filter = false;
+  EXPECT_FALSE(MakeMapFilter(options));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Runs the passes of one stage for one reference image.
+// Runs the passes of one stage for one reference image on a backend.
 #pragma once
 
 #include "src/engine/backend.h"
@@ -15,13 +15,13 @@ using PhaseTimes = std::map<std::string, double>;
 // `map` has the size of the reference and holds the hypotheses to start from
 // (distance 0: none); `views` the images, and for a geometric stage the depth
 // of the sources, at the stage's level.
-void RunStage(Backend* backend,
-              const ViewSet& views,
-              const Schedule& schedule,
-              const StageSpec& stage,
-              const MethodParams& params,
-              const RunControl& control,
-              HypothesisMap* map,
-              PhaseTimes* times);
+void RunPasses(Backend* backend,
+               const ViewSet& views,
+               const Schedule& schedule,
+               const StageSpec& stage,
+               const MethodParams& params,
+               const RunControl& control,
+               HypothesisMap* map,
+               PhaseTimes* times);
 
 }  // namespace hpm

@@ -1,4 +1,4 @@
-#include "colmap_plugin/controller/needed_views.h"
+#include "src/engine/needed_views.h"
 
 #include "src/engine/source_geometry.h"
 

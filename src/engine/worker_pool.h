@@ -1,11 +1,11 @@
-// The backends of a run, each with a stage runner of its own, and what happens
-// when a GPU gives up: its image goes to the others, the last resort is the
-// CPU.
+// The backends of a run, each with the memory of one image in flight, and what
+// happens when a GPU gives up: its image goes to the others, the last resort is
+// the CPU.
 #pragma once
 
-#include "colmap_plugin/controller/stage_runner.h"
 #include "src/base/log.h"
 #include "src/engine/backend.h"
+#include "src/image/hypothesis_map.h"
 
 #include <functional>
 #include <memory>
@@ -13,32 +13,30 @@
 
 namespace hpm {
 
+// Works on one problem at a time.
+struct Worker {
+  std::unique_ptr<Backend> backend;
+  HypothesisMap map;  // its memory stays for the next problem
+};
+
 class WorkerPool {
  public:
-  using MakeRunner =
-      std::function<std::unique_ptr<StageRunner>(Backend* backend)>;
-
   // Without GPUs the CPU computes, one image in flight per entry of `cpus`.
   // may_fall_back: whether it does so too when no GPU is left.
   WorkerPool(std::vector<std::unique_ptr<Backend>> cpus,
              std::vector<std::unique_ptr<Backend>> gpus,
-             MakeRunner make_runner,
              bool may_fall_back,
              LogSink log);
+  // One image in flight.
+  explicit WorkerPool(std::unique_ptr<Backend> backend);
 
   // Computes all problems; `compute` may be called from several threads at
   // once. A GPU that runs out of memory or fails is given up and its problem
   // computed by another worker. Throws what `compute` throws otherwise.
-  void Run(
-      const std::vector<int>& problems,
-      const std::function<void(StageRunner* runner, int problem)>& compute);
+  void Run(const std::vector<int>& problems,
+           const std::function<void(Worker* worker, int problem)>& compute);
 
  private:
-  struct Worker {
-    std::unique_ptr<Backend> backend;
-    std::unique_ptr<StageRunner> runner;
-  };
-
   std::vector<Worker> cpus_;
   std::vector<Worker> gpus_;
   std::vector<int> alive_;  // indices into gpus_

@@ -1,4 +1,4 @@
-#include "colmap_plugin/controller/work_queue.h"
+#include "src/engine/work_queue.h"
 
 #include <algorithm>
 #include <condition_variable>

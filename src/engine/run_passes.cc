@@ -1,4 +1,4 @@
-#include "src/engine/estimator.h"
+#include "src/engine/run_passes.h"
 
 #include "src/base/large_vectors.h"
 #include "src/engine/local_planes.h"
@@ -51,6 +51,7 @@ void MergeLevels(const HypothesisMap& carried,
           map->masks[i] = carried.masks[i];
         }
       });
+  map->Touch();
 }
 
 // Forgets the hypotheses of textured pixels; returns which.
@@ -69,19 +70,20 @@ std::vector<bool> ForgetTextured(const GrayImage& image,
       map->planes[i].distance = 0;
     }
   });
+  map->Touch();
   return textured;
 }
 
 }  // namespace
 
-void RunStage(Backend* backend,
-              const ViewSet& views,
-              const Schedule& schedule,
-              const StageSpec& stage,
-              const MethodParams& params,
-              const RunControl& control,
-              HypothesisMap* map,
-              PhaseTimes* times) {
+void RunPasses(Backend* backend,
+               const ViewSet& views,
+               const Schedule& schedule,
+               const StageSpec& stage,
+               const MethodParams& params,
+               const RunControl& control,
+               HypothesisMap* map,
+               PhaseTimes* times) {
   if (stage.passes.empty()) return;
   {
     PhaseTimer timer(times, "prepare");
@@ -110,7 +112,6 @@ void RunStage(Backend* backend,
   for (size_t i = 0; i < stage.passes.size(); ++i) {
     const Pass& pass = stage.passes[i];
     RunControl pass_control = control;
-    pass_control.continues = i > 0 && !stage.from_coarser;
     pass_control.progress = [&](double fraction) {
       if (control.progress) {
         control.progress((static_cast<double>(i) + fraction) / num_passes);

@@ -1,0 +1,162 @@
+#include "src/engine/memory_stores.h"
+
+#include "src/image/middle_pixel.h"
+#include "src/image/shrink_image.h"
+
+#include <cmath>
+#include <string>
+
+namespace hpm {
+namespace {
+
+// 1/z at the pixel centres of the camera halved `more_levels` times.
+InverseDepthMap InverseDepthOf(const std::vector<Plane>& planes,
+                               const Camera& camera,
+                               int more_levels) {
+  const Camera coarse = LevelCamera(camera, more_levels);
+  const MiddlePixel middle(more_levels);
+  std::vector<float> inverse;
+  inverse.reserve(static_cast<size_t>(coarse.width) * coarse.height);
+  for (int row = 0; row < coarse.height; ++row) {
+    for (int col = 0; col < coarse.width; ++col) {
+      const size_t at =
+          static_cast<size_t>(middle.Of(row, camera.height)) * camera.width +
+          middle.Of(col, camera.width);
+      const float z = DepthAt(
+          camera, planes[at], middle.CenterOf(col), middle.CenterOf(row));
+      const bool is_depth =
+          planes[at].distance > 0 && std::isfinite(z) && z > 0;
+      inverse.push_back(is_depth ? 1 / z : 0);
+    }
+  }
+  return InverseDepthMap::Of(inverse);
+}
+
+}  // namespace
+
+MemoryImageStore::MemoryImageStore(std::vector<GrayImage> images) {
+  for (GrayImage& image : images)
+    images_.push_back(std::make_shared<const GrayImage>(std::move(image)));
+}
+
+void MemoryImageStore::StartStage(int level) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (level != level_) halved_.clear();
+  level_ = level;
+}
+
+std::vector<std::shared_ptr<const GrayImage>> MemoryImageStore::Images(
+    const std::vector<ImageRequest>& requests) {
+  std::vector<std::shared_ptr<const GrayImage>> images;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  for (const ImageRequest& request : requests) {
+    const auto& full = images_.at(request.image);
+    const int level = level_ + request.more_levels;
+    if (level == 0) {
+      images.push_back(full);
+      continue;
+    }
+    auto& halved = halved_[{request.image, level}];
+    if (halved == nullptr)
+      halved = std::make_shared<const GrayImage>(ShrinkImage(*full, level));
+    images.push_back(halved);
+  }
+  return images;
+}
+
+MemoryMapStore::MemoryMapStore(const std::vector<Problem>& problems)
+    : problems_(problems) {
+  for (size_t p = 0; p < problems.size(); ++p)
+    problem_of_image_[problems[p].image] = static_cast<int>(p);
+}
+
+void MemoryMapStore::StartStage(int stage) {
+  before_ = std::move(now_);
+  now_.clear();
+  now_.resize(problems_.size());
+  depths_.clear();
+  stage_ = stage;
+}
+
+const MemoryMapStore::Result* MemoryMapStore::Find(int stage,
+                                                   int problem) const {
+  const std::vector<Result>& results = stage == stage_ ? now_ : before_;
+  if (stage < 0 || stage > stage_ || stage < stage_ - 1 ||
+      problem >= static_cast<int>(results.size()) ||
+      !results[problem].is_there) {
+    return nullptr;
+  }
+  return &results[problem];
+}
+
+bool MemoryMapStore::ReadPlanes(int stage,
+                                int problem,
+                                std::vector<Plane>* planes) {
+  const Result* result = Find(stage, problem);
+  if (result == nullptr) {
+    throw Error(ErrorCode::kBadInput,
+                "image " + std::to_string(problems_[problem].image) +
+                    ": the map of the stage before is missing; compute all "
+                    "stages in order");
+  }
+  *planes = result->map.planes;
+  return result->is_complete;
+}
+
+std::vector<SourceDepth> MemoryMapStore::ReadSourceDepths(int stage,
+                                                          int problem) {
+  std::vector<SourceDepth> depths;
+  for (const ProblemSource& source : problems_[problem].sources) {
+    const auto found = problem_of_image_.find(source.image);
+    if (found == problem_of_image_.end()) {
+      depths.emplace_back();
+      continue;
+    }
+    const Result* result = Find(stage, found->second);
+    if (result == nullptr) {
+      depths.push_back({nullptr, false});
+      continue;
+    }
+    depths.push_back(
+        {Depth(found->second, source.more_levels), result->is_complete});
+  }
+  return depths;
+}
+
+std::shared_ptr<const InverseDepthMap> MemoryMapStore::Depth(int problem,
+                                                             int more_levels) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  auto& depth = depths_[{problem, more_levels}];
+  if (depth == nullptr) {
+    const Result& result = before_[problem];
+    depth = std::make_shared<const InverseDepthMap>(
+        InverseDepthOf(result.map.planes, result.camera, more_levels));
+  }
+  return depth;
+}
+
+void MemoryMapStore::Write(int, int problem, StageOutput* output) {
+  HypothesisMap& map = *output->map;
+  for (size_t i = 0; i < output->keep.size(); ++i) {
+    if (!output->keep[i]) map.planes[i].distance = 0;
+  }
+  map.Touch();
+  Result& result = now_[problem];
+  if (output->is_final) {
+    result.map = std::move(map);
+  } else {
+    result.map.width = map.width;
+    result.map.height = map.height;
+    result.map.planes = std::move(map.planes);
+  }
+  result.camera = output->views.ref.camera;
+  result.is_complete = output->is_complete;
+  result.is_there = true;
+}
+
+const HypothesisMap* MemoryMapStore::map(int problem) const {
+  const Result* result = Find(stage_, problem);
+  return result == nullptr ? nullptr : &result->map;
+}
+
+}  // namespace hpm
