@@ -13,7 +13,7 @@ fail() { echo "FAILED: $*" >&2; exit 1; }
 echo "== cmake --install"
 cmake --install "$build" --prefix "$prefix" >"$work/install.log"
 version=$("$prefix/bin/hpm_mvs" version | sed -n 's/^hpm_mvs \([0-9.]*\),.*/\1/p')
-[[ -n $version ]] || fail "the installed program does not run"
+[[ $version == "$(<../../VERSION)" ]] || fail "the installed program does not run, or is not version $(<../../VERSION)"
 # Found by its place beside the wrapper, not by PATH.
 PATH=/usr/bin:/bin "$prefix/libexec/hpm_mvs/bin/colmap" patch_match_stereo --help | grep -q "hpm_mvs $version" ||
   fail "the installed wrapper does not find hpm_mvs"
@@ -47,7 +47,7 @@ mkdir "$work/source"
 cp consumer.cc "$work/source"
 cp consumer.cmake "$work/source/CMakeLists.txt"
 cmake -S "$work/source" -B "$work/consumer" -G Ninja -DCMAKE_PREFIX_PATH="$prefix" \
-  -DHPM_INCLUDE="$prefix/include/hpm_mvs" \
+  -DHPM_INCLUDE="$prefix/include/hpm_mvs" -DHPM_VERSION="${version%.*}" \
   -DCMAKE_BUILD_TYPE=Debug >"$work/consumer.log" 2>&1 || { tail "$work/consumer.log"; fail "configuring the consumer"; }
 cmake --build "$work/consumer" >>"$work/consumer.log" 2>&1 || { grep -A 5 -E 'error|FAILED' "$work/consumer.log" | head -n 30; fail "building the consumer or the headers alone"; }
 "$work/consumer/consumer" || fail "running the consumer"
