@@ -4,8 +4,8 @@
 #   --colmap  also what COLMAP itself is built with, for the tests of patches/
 #   --arm64   also what cross-compiles for ARM and runs it, for tests/arm; exit code 77
 #             when the arm64 libraries cannot be had
-#   --release also what packages, documents and lint are made and checked with, and
-#             clang's own C++ library
+#   --release also what packages, documents and lint are made and checked with,
+#             clang's own C++ library and a compiler for Windows
 #   --check   installs nothing; exit code 1 when something is missing
 set -euo pipefail
 
@@ -43,6 +43,7 @@ RELEASE_PACKAGES=(
   doxygen
   codespell shellcheck
   libc++-dev libc++abi-dev
+  g++-mingw-w64-x86-64-posix
 )
 
 # The emulator without the package that would let the kernel start it on its own.
