@@ -15,7 +15,8 @@ install(FILES
   cmake/hpm_opencv.cmake
   DESTINATION ${package_folder} COMPONENT development)
 install(DIRECTORY src colmap_plugin DESTINATION include/hpm_mvs COMPONENT development
-  FILES_MATCHING PATTERN "*.h" PATTERN in_colmap EXCLUDE PATTERN wrapper EXCLUDE)
+  FILES_MATCHING PATTERN "*.h"
+  PATTERN in_colmap EXCLUDE PATTERN wrapper EXCLUDE PATTERN "*_windows.h" EXCLUDE)
 # Of cuda/, the backend's interface with all that it includes; no more, for what lies
 # below it needs the CUDA toolkit.
 install(DIRECTORY cuda DESTINATION include/hpm_mvs COMPONENT development

@@ -43,7 +43,7 @@ RELEASE_PACKAGES=(
   doxygen
   codespell shellcheck
   libc++-dev libc++abi-dev
-  g++-mingw-w64-x86-64-posix
+  g++-mingw-w64-x86-64-posix wine64
 )
 
 # The emulator without the package that would let the kernel start it on its own.

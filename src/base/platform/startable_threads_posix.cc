@@ -77,12 +77,4 @@ int CountStartableThreads(int most, size_t stack_bytes, size_t spare_bytes) {
   return static_cast<int>(threads.size());
 }
 
-Error NoThreadError() {
-  return Error(
-      ErrorCode::kOutOfResources,
-      "cannot start a thread; raise the limit on processes (ulimit -u, or the "
-      "container's pids limit) or on address space (ulimit -v), or set a "
-      "smaller --PatchMatchStereo.num_threads");
-}
-
 }  // namespace hpm
