@@ -14,9 +14,12 @@ install(FILES
   ${PROJECT_BINARY_DIR}/hpm_mvs-config-version.cmake
   cmake/hpm_opencv.cmake
   DESTINATION ${package_folder} COMPONENT development)
+if(NOT WIN32)
+  set(other_systems PATTERN "*_windows.h" EXCLUDE)
+endif()
 install(DIRECTORY src colmap_plugin DESTINATION include/hpm_mvs COMPONENT development
   FILES_MATCHING PATTERN "*.h"
-  PATTERN in_colmap EXCLUDE PATTERN wrapper EXCLUDE PATTERN "*_windows.h" EXCLUDE)
+  PATTERN in_colmap EXCLUDE PATTERN wrapper EXCLUDE ${other_systems})
 # Of cuda/, the backend's interface with all that it includes; no more, for what lies
 # below it needs the CUDA toolkit.
 install(DIRECTORY cuda DESTINATION include/hpm_mvs COMPONENT development

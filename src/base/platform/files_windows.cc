@@ -25,8 +25,6 @@ int ErrnoOf(DWORD error) {
     case ERROR_DISK_FULL:
     case ERROR_HANDLE_DISK_FULL:
       return ENOSPC;
-    case ERROR_DISK_QUOTA_EXCEEDED:
-      return ENOSPC;
     case ERROR_LOCK_VIOLATION:
     case ERROR_IO_PENDING:
       return EWOULDBLOCK;

@@ -1,6 +1,7 @@
 // Windows' part of files.h, included by it alone.
 #pragma once
 
+#include <cerrno>
 #include <cstddef>
 #include <cstdint>
 
@@ -8,6 +9,14 @@
 #include <io.h>
 #include <sys/stat.h>
 #include <sys/types.h>
+
+// Errors that never come there.
+#ifndef EDQUOT
+#define EDQUOT 10069
+#endif
+#ifndef ESTALE
+#define ESTALE 10070
+#endif
 
 #ifdef _MSC_VER
 using ssize_t = std::ptrdiff_t;

@@ -14,19 +14,14 @@
 namespace hpm {
 namespace {
 
-// The locale in which a point is a point; made once, kept to the end.
 #ifdef _WIN32
-_locale_t Classic() {
-  static const _locale_t classic = _create_locale(LC_ALL, "C");
-  return classic;
-}
-double Parse(const char* text, char** end, double) {
-  return _strtod_l(text, end, Classic());
-}
-float Parse(const char* text, char** end, float) {
-  return _strtof_l(text, end, Classic());
+template <class Float>
+std::from_chars_result Read(const char* first, const char* last, Float* value) {
+  return std::from_chars(first, last, *value);
 }
 #else
+
+// The locale in which a point is a point; made once, kept to the end.
 locale_t Classic() {
   static const locale_t classic = newlocale(LC_ALL_MASK, "C", nullptr);
   return classic;
@@ -37,7 +32,6 @@ double Parse(const char* text, char** end, double) {
 float Parse(const char* text, char** end, float) {
   return strtof_l(text, end, Classic());
 }
-#endif
 
 bool BeginsNumber(const std::string& text) {
   const size_t digits = text[0] == '-' ? 1 : 0;
@@ -71,6 +65,7 @@ std::from_chars_result Read(const char* first, const char* last, Float* value) {
   *value = number;
   return {stop, std::errc()};
 }
+#endif
 
 }  // namespace
 

@@ -9,7 +9,7 @@ namespace hpm {
 
 // As std::from_chars in its general form: no blanks and no plus in front, no
 // hexadecimal digits; "inf" and "nan" in any case. Numbers beyond the type are
-// result_out_of_range. By the C library.
+// result_out_of_range. By the C library, but on Windows, which has the other.
 std::from_chars_result FloatFromChars(const char* first,
                                       const char* last,
                                       float* value);
