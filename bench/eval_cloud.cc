@@ -4,8 +4,8 @@
 #include "bench/eval/ply.h"
 #include "bench/eval/program.h"
 #include "src/base/error.h"
+#include "src/base/platform/numbers.h"
 
-#include <charconv>
 #include <iostream>
 #include <sstream>
 
@@ -21,7 +21,7 @@ std::vector<double> ParseThresholds(const std::string& text) {
   while (std::getline(items, item, ',')) {
     double value = 0;
     const auto [end, error] =
-        std::from_chars(item.data(), item.data() + item.size(), value);
+        FromChars(item.data(), item.data() + item.size(), &value);
     if (error != std::errc() || end != item.data() + item.size() ||
         !(value > 0)) {
       throw Error(ErrorCode::kUsage,

@@ -1,4 +1,4 @@
-# What `cmake --install` and the Debian package hold beside the programs: the library
+# What `cmake --install` and the packages hold beside the programs: the library
 # for find_package(hpm_mvs), and the documents. Component `runtime` is for users,
 # `development` for programs that link the library.
 include_guard()
@@ -14,8 +14,12 @@ install(FILES
   ${PROJECT_BINARY_DIR}/hpm_mvs-config-version.cmake
   cmake/hpm_opencv.cmake
   DESTINATION ${package_folder} COMPONENT development)
+if(NOT WIN32)
+  set(other_systems PATTERN "*_windows.h" EXCLUDE)
+endif()
 install(DIRECTORY src colmap_plugin DESTINATION include/hpm_mvs COMPONENT development
-  FILES_MATCHING PATTERN "*.h" PATTERN in_colmap EXCLUDE PATTERN wrapper EXCLUDE)
+  FILES_MATCHING PATTERN "*.h"
+  PATTERN in_colmap EXCLUDE PATTERN wrapper EXCLUDE ${other_systems})
 # Of cuda/, the backend's interface with all that it includes; no more, for what lies
 # below it needs the CUDA toolkit.
 install(DIRECTORY cuda DESTINATION include/hpm_mvs COMPONENT development
@@ -23,26 +27,14 @@ install(DIRECTORY cuda DESTINATION include/hpm_mvs COMPONENT development
 
 install(FILES README.md CHANGELOG.md docs/options.md
         DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)
-install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT runtime)
-
-# `cpack -G DEB` in the build folder makes hpm-mvs_<version>_<architecture>.deb of the
-# programs alone.
-set(CPACK_GENERATOR DEB)
-set(CPACK_PACKAGE_NAME hpm-mvs)
-set(CPACK_PACKAGE_CONTACT "HPM-MVS maintainers <hpm-mvs@localhost>")
-set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
-set(CPACK_STRIP_FILES ON)
-set(CPACK_COMPONENTS_ALL runtime)
-set(CPACK_COMPONENTS_GROUPING ALL_COMPONENTS_IN_ONE)
-set(CPACK_DEB_COMPONENT_INSTALL ON)
-set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
-set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
-set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS colmap)
-set(CPACK_PACKAGE_DESCRIPTION "hpm_mvs computes the depth and normal maps of a COLMAP dense workspace: the same
-options, the same files in, the same files out, and no GPU needed.")
 if(HPM_CGAL)
-  string(APPEND CPACK_PACKAGE_DESCRIPTION "
-This build triangulates with CGAL, so the package may be passed on only under the GPL.")
+  set(HPM_CGAL_NOTE "
+The sources are under the licence below. This build holds code of CGAL's 2D
+triangulations, which are under the GNU General Public License, version 3 or later, so
+the programs may be passed on only under its terms; on Debian systems its text is in
+/usr/share/common-licenses/GPL-3. A build with -DHPM_CGAL=OFF holds none of it.
+")
 endif()
-include(CPack)
+file(READ LICENSE HPM_LICENSE)
+configure_file(cmake/package/copyright.in copyright @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)

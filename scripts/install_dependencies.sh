@@ -4,6 +4,8 @@
 #   --colmap  also what COLMAP itself is built with, for the tests of patches/
 #   --arm64   also what cross-compiles for ARM and runs it, for tests/arm; exit code 77
 #             when the arm64 libraries cannot be had
+#   --release also what packages, documents and lint are made and checked with,
+#             clang's own C++ library and a compiler for Windows
 #   --check   installs nothing; exit code 1 when something is missing
 set -euo pipefail
 
@@ -36,6 +38,14 @@ COLMAP_PACKAGES=(
   libglew-dev libgl-dev qtbase5-dev libqt5opengl5-dev
 )
 
+RELEASE_PACKAGES=(
+  dpkg-dev file lintian
+  doxygen
+  codespell shellcheck
+  libc++-dev libc++abi-dev
+  g++-mingw-w64-x86-64-posix wine64
+)
+
 # The emulator without the package that would let the kernel start it on its own.
 ARM64_PACKAGES=(g++-aarch64-linux-gnu qemu-user)
 
@@ -44,9 +54,11 @@ check=0
 for argument in "$@"; do
   case $argument in
     --colmap) PACKAGES+=("${COLMAP_PACKAGES[@]}") ;;
+    --release) PACKAGES+=("${RELEASE_PACKAGES[@]}") ;;
     --arm64) arm64=1; PACKAGES+=("${ARM64_PACKAGES[@]}") ;;
     --check) check=1 ;;
-    *) echo "usage: scripts/install_dependencies.sh [--colmap] [--arm64] [--check]" >&2; exit 2 ;;
+    --help) sed -n '2,/^set /s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    *) echo "usage: scripts/install_dependencies.sh [--colmap] [--arm64] [--release] [--check]" >&2; exit 2 ;;
   esac
 done
 # The arm64 libraries belong to no package manager's list.

@@ -1,23 +1,9 @@
 #include "colmap_plugin/controller/run_statistics.h"
 
 #include "colmap_plugin/options/option_record.h"
-
-#include <sys/resource.h>
+#include "src/base/platform/memory.h"
 
 namespace hpm {
-namespace {
-
-uint64_t PeakMemoryBytes() {
-  rusage usage = {};
-  getrusage(RUSAGE_SELF, &usage);
-#ifdef __APPLE__
-  return static_cast<uint64_t>(usage.ru_maxrss);  // kibibytes everywhere else
-#else
-  return static_cast<uint64_t>(usage.ru_maxrss) * 1024;
-#endif
-}
-
-}  // namespace
 
 nlohmann::json ToJson(const StageResult& result) {
   nlohmann::json json = {

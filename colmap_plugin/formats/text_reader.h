@@ -4,8 +4,8 @@
 #pragma once
 
 #include "colmap_plugin/formats/input_file.h"
+#include "src/base/platform/numbers.h"
 
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -64,7 +64,7 @@ bool ParseNumber(std::string_view word, T* value) {
   if (word.size() > 1 && word[0] == '+' && word[1] != '-')
     word.remove_prefix(1);
   const auto [end, error] =
-      std::from_chars(word.data(), word.data() + word.size(), *value);
+      FromChars(word.data(), word.data() + word.size(), value);
   return error == std::errc() && end == word.data() + word.size();
 }
 

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 // COLMAP's own controller holds one, declared only.
 #if __has_include("colmap/mvs/workspace.h")

@@ -1,12 +1,14 @@
 #include "colmap_plugin/options/option_value.h"
 
+#include "src/base/platform/numbers.h"
+
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace hpm {
 namespace {
@@ -33,12 +35,12 @@ bool Parse(std::string_view text, bool* value) {
 
 template <class Number>
 bool ParseNumber(std::string_view text, Number* value) {
-  // from_chars knows no leading plus, COLMAP's parser does.
+  // FromChars() knows no leading plus, COLMAP's parser does.
   if (text.size() > 1 && text[0] == '+' && text[1] != '-')
     text.remove_prefix(1);
   Number number = 0;
   const char* end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, number);
+  const auto [rest, error] = FromChars(text.data(), end, &number);
   if (error != std::errc() || rest != end ||
       !std::isfinite(static_cast<double>(number))) {
     return false;

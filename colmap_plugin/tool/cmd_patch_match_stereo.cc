@@ -11,6 +11,7 @@
 #include <ostream>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace hpm {
 namespace {

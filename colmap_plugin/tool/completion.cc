@@ -3,6 +3,7 @@
 #include "colmap_plugin/options/option_table.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace hpm {
 namespace {

@@ -3,8 +3,8 @@
 #include "colmap_plugin/controller/controller.h"
 #include "colmap_plugin/tool/dispatch.h"
 #include "colmap_plugin/tool/signals.h"
-#include "colmap_plugin/tool/standard_streams.h"
 #include "src/base/error.h"
+#include "src/base/platform/terminal.h"
 
 #include <chrono>
 #include <cstdlib>
@@ -14,23 +14,19 @@
 #include <vector>
 
 #include <opencv2/core/utils/logger.hpp>
-#include <sys/ioctl.h>
-#include <unistd.h>
 
 namespace hpm {
 namespace {
 
 bool IsTerminal() {
   const char* name = std::getenv("TERM");
-  return isatty(STDOUT_FILENO) && name != nullptr &&
+  return IsStandardOutputATerminal() && name != nullptr &&
          std::string_view(name) != "dumb";
 }
 
-int TerminalColumns() {
-  winsize size = {};
-  const bool known =
-      ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
-  return known ? size.ws_col : 80;
+int Columns() {
+  const int columns = TerminalColumns();
+  return columns > 0 ? columns : 80;
 }
 
 double Seconds() {
@@ -56,7 +52,7 @@ int RunProcess(const std::vector<std::string>& arguments) {
   ToolEnvironment tool{&std::cout,
                        &std::cerr,
                        IsTerminal(),
-                       TerminalColumns(),
+                       Columns(),
                        Seconds,
                        &cancel,
                        RunStereo};

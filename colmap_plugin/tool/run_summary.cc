@@ -3,6 +3,7 @@
 #include "colmap_plugin/tool/text.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace hpm {
 namespace {

@@ -1,8 +1,9 @@
 #include "colmap_plugin/tool/signals.h"
 
-#include <csignal>
+#include "src/base/platform/stop_signals.h"
 
-#include <unistd.h>
+#include <csignal>
+#include <cstdlib>
 
 namespace hpm {
 namespace {
@@ -11,7 +12,7 @@ CancelToken cancel_token;
 volatile std::sig_atomic_t caught_signal = 0;
 
 void HandleSignal(int signal) {
-  if (caught_signal != 0) _exit(128 + signal);
+  if (caught_signal != 0) std::_Exit(128 + signal);
   caught_signal = signal;
   cancel_token.Cancel();
 }
@@ -19,18 +20,8 @@ void HandleSignal(int signal) {
 }  // namespace
 
 const CancelToken& InstallSignalHandlers() {
-  struct sigaction action = {};
-  sigemptyset(&action.sa_mask);
-  action.sa_flags = SA_RESTART;
-  action.sa_handler = HandleSignal;
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-  struct sigaction hangup = {};
-  sigaction(SIGHUP, nullptr, &hangup);
-  if (hangup.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);
-  action.sa_handler = SIG_IGN;
-  sigaction(SIGXFSZ, &action, nullptr);
-  sigaction(SIGPIPE, &action, nullptr);
+  CatchStopSignals(HandleSignal);
+  LetWritesFail();
   return cancel_token;
 }
 

@@ -1,45 +1,15 @@
 #include "colmap_plugin/workspace/lock_owner.h"
 
-#include <cerrno>
-#include <csignal>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <locale>
+#include "src/base/platform/processes.h"
+
+#include <limits>
 #include <random>
-#include <sstream>
-#include <system_error>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <unistd.h>
 
 namespace hpm {
 namespace {
-
-struct ProcessStatus {
-  char state = '?';
-  uint64_t start_time = 0;
-};
-
-// proc(5), /proc/<pid>/stat: fields 3 and 22, counted from behind the command
-// name.
-std::optional<ProcessStatus> ReadProcessStatus(int64_t pid) {
-  std::ifstream file(fmt::format("/proc/{}/stat", pid));
-  const std::string text{std::istreambuf_iterator<char>(file),
-                         std::istreambuf_iterator<char>()};
-  const size_t name_end = text.rfind(')');
-  if (name_end == std::string::npos) return std::nullopt;
-  std::istringstream fields(text.substr(name_end + 1));
-  fields.imbue(std::locale::classic());
-  ProcessStatus status;
-  fields >> status.state;
-  std::string skipped;
-  for (int field = 4; field < 22; ++field) fields >> skipped;
-  fields >> status.start_time;
-  if (!fields) return std::nullopt;
-  return status;
-}
 
 std::string RandomToken() {
   std::random_device random;
@@ -50,15 +20,11 @@ std::string RandomToken() {
 
 LockOwner ThisProcess() {
   LockOwner owner;
-  char host[256] = {};
-  if (gethostname(host, sizeof(host) - 1) == 0) owner.host = host;
-  std::ifstream("/proc/sys/kernel/random/boot_id") >> owner.boot_id;
-  std::error_code error;
-  owner.pid_namespace =
-      std::filesystem::read_symlink("/proc/self/ns/pid", error).string();
-  owner.pid = getpid();
-  if (const auto status = ReadProcessStatus(owner.pid))
-    owner.start_time = status->start_time;
+  owner.host = HostName();
+  owner.boot_id = BootId();
+  owner.pid_namespace = ProcessNamespace();
+  owner.pid = ThisProcessId();
+  owner.start_time = StatusOfProcess(owner.pid).start_time;
   owner.token = RandomToken();
   return owner;
 }
@@ -93,7 +59,7 @@ std::optional<LockOwner> ParseLockOwner(const std::string& text) {
   owner.pid_namespace = json["pid_namespace"];
   owner.pid = json["pid"];
   owner.start_time = json["start_time"];
-  if (owner.pid <= 0 || owner.pid != static_cast<pid_t>(owner.pid))
+  if (owner.pid <= 0 || owner.pid > std::numeric_limits<int32_t>::max())
     return std::nullopt;
   if (has("boot_id", &nlohmann::json::is_string))
     owner.boot_id = json["boot_id"];
@@ -111,13 +77,10 @@ bool IsVisible(const LockOwner& owner, const LockOwner& self) {
 }
 
 bool IsAlive(const LockOwner& owner) {
-  if (kill(static_cast<pid_t>(owner.pid), 0) != 0 && errno == ESRCH)
-    return false;
-  const auto status = ReadProcessStatus(owner.pid);
-  if (!status) return true;
-  if (status->state == 'Z' || status->state == 'X')
-    return false;  // dead, not yet waited for
-  return owner.start_time == 0 || owner.start_time == status->start_time;
+  const ProcessStatus status = StatusOfProcess(owner.pid);
+  return status.state == ProcessState::kAlive &&
+         (owner.start_time == 0 || status.start_time == 0 ||
+          owner.start_time == status.start_time);
 }
 
 }  // namespace hpm

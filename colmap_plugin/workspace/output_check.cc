@@ -12,7 +12,6 @@
 #include <string>
 
 #include <fmt/format.h>
-#include <sys/statvfs.h>
 
 namespace hpm {
 namespace fs = std::filesystem;
@@ -25,13 +24,11 @@ void CheckWritable(const fs::path& folder) {
 }
 
 void CheckFreeSpace(const fs::path& folder, uint64_t num_bytes) {
-  struct statvfs disk = {};
+  std::error_code error;
+  const fs::space_info disk = fs::space(folder, error);
   // Some network file systems report no sizes; then the writes themselves must
   // tell.
-  if (statvfs(folder.c_str(), &disk) != 0 || disk.f_blocks == 0) return;
-  const uint64_t num_free = static_cast<uint64_t>(disk.f_bavail) *
-                            static_cast<uint64_t>(disk.f_frsize);
-  if (num_free >= num_bytes) return;
+  if (error || disk.capacity == 0 || disk.available >= num_bytes) return;
   throw Error(
       ErrorCode::kOutOfResources,
       fmt::format(
@@ -39,7 +36,7 @@ void CheckFreeSpace(const fs::path& folder, uint64_t num_bytes) {
           "--PatchMatchStereo.max_image_size or list fewer images",
           folder.string(),
           num_bytes,
-          num_free));
+          disk.available));
 }
 
 // Asks the file system itself: what it allows differs from one to another.

@@ -11,11 +11,7 @@
 #include <optional>
 #include <system_error>
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 namespace hpm {
 namespace fs = std::filesystem;
@@ -61,7 +57,7 @@ std::optional<std::string> ReadAll(int fd) {
 // file is opened and may show what they remember otherwise.
 struct LockFile {
   std::string contents;
-  timespec touched = {};
+  int64_t touched = 0;  // nanoseconds since 1970
 };
 
 std::optional<LockFile> ReadLockFile(const fs::path& path) {
@@ -73,16 +69,7 @@ std::optional<LockFile> ReadLockFile(const fs::path& path) {
     errno = EIO;
     return std::nullopt;
   }
-#ifdef __APPLE__
-  return LockFile{*contents, status.st_mtimespec};
-#else
-  return LockFile{*contents, status.st_mtim};
-#endif
-}
-
-double Seconds(const timespec& time) {
-  return static_cast<double>(time.tv_sec) +
-         1e-9 * static_cast<double>(time.tv_nsec);
+  return LockFile{*contents, ModifiedNanoseconds(status)};
 }
 
 bool IsSameFile(int fd, const fs::path& path) {
@@ -218,7 +205,7 @@ bool RunLock::TryCreate(LockOwner self) {
   if (n != static_cast<ssize_t>(contents_.size()))
     error = n < 0 ? errno : ENOSPC;
   // For other machines to see.
-  if (error == 0 && fsync(fd_) != 0 && errno != EINVAL && errno != ENOTSUP)
+  if (error == 0 && SyncFile(fd_) != 0 && errno != EINVAL && errno != ENOTSUP)
     error = errno;
   const bool is_named = IsSameFile(fd_, path_);
   if (error == 0 && is_named) return true;
@@ -321,7 +308,7 @@ bool RunLock::ShowsSignOfLife(const std::string& contents,
   const auto first = ReadLockFile(path_);
   const auto clock = FileSystemTime(path_.parent_path());
   if (!first || !clock || first->contents != contents) return true;
-  const double age = Seconds(*clock) - Seconds(first->touched);
+  const double age = 1e-9 * static_cast<double>(*clock - first->touched);
   const double expiry = std::chrono::duration<double>(rules_.expiry).count();
   // A time in the future is of another clock, and no sign of life either.
   if (std::abs(age) < expiry) return true;
@@ -333,8 +320,7 @@ bool RunLock::ShowsSignOfLife(const std::string& contents,
           std::chrono::duration<double>(rules_.watch).count()));
   Wait(rules_.watch);
   const auto last = ReadLockFile(path_);
-  return !last || last->contents != contents ||
-         Seconds(last->touched) != Seconds(first->touched);
+  return !last || last->contents != contents || last->touched != first->touched;
 }
 
 void RunLock::Wait(std::chrono::milliseconds time) const {

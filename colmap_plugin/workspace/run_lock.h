@@ -4,6 +4,7 @@
 #include "colmap_plugin/workspace/file_system.h"
 #include "src/base/cancel.h"
 #include "src/base/log.h"
+#include "src/base/platform/files.h"
 
 #include <chrono>
 #include <condition_variable>

@@ -4,6 +4,7 @@
 // environment, exit codes and signals are those of a direct call.
 
 #include "colmap_plugin/wrapper/find_program.h"
+#include "src/base/platform/processes.h"
 
 #include <cerrno>
 #include <cstdio>
@@ -12,9 +13,6 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
-#include <system_error>
-
-#include <unistd.h>
 
 namespace {
 
@@ -32,24 +30,25 @@ std::string_view SearchPath() {
 fs::path FindHpmMvs(const fs::path& self) {
   const fs::path installed =
       (self.parent_path() / HPM_MVS_FROM_WRAPPER).lexically_normal();
-  if (access(installed.c_str(), X_OK) == 0) return installed;
+  if (hpm::IsExecutable(installed)) return installed;
   return hpm::FindLater(SearchPath(), "hpm_mvs", "");
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::error_code error;
-  const fs::path self = fs::read_symlink("/proc/self/exe", error);
-  if (error) {
-    std::fprintf(stderr, "ERROR: /proc/self/exe cannot be read; mount /proc\n");
+  const fs::path self = hpm::ThisProgram();
+  if (self.empty()) {
+    std::fprintf(stderr,
+                 "ERROR: the system does not say where this program lies; "
+                 "mount /proc\n");
     return kNotFound;
   }
   const bool is_stereo =
       argc > 1 && std::strcmp(argv[1], "patch_match_stereo") == 0;
-  std::string program = is_stereo
-                            ? FindHpmMvs(self)
-                            : hpm::FindLater(SearchPath(), "colmap", self);
+  const fs::path program = is_stereo
+                               ? FindHpmMvs(self)
+                               : hpm::FindLater(SearchPath(), "colmap", self);
   if (program.empty()) {
     std::fprintf(
         stderr,
@@ -57,15 +56,14 @@ int main(int argc, char** argv) {
                     "PATH; install hpm_mvs again\n"
                   : "ERROR: no colmap behind %s on PATH; install COLMAP or "
                     "add its folder to the end of PATH\n",
-        self.parent_path().c_str());
+        self.parent_path().string().c_str());
     return kNotFound;
   }
-  // The found path, as a program may look for its files beside argv[0].
-  argv[0] = program.data();
-  execv(program.c_str(), argv);
+  const int exit_code = hpm::ReplaceThisProgram(program, argv);
+  if (exit_code >= 0) return exit_code;
   std::fprintf(stderr,
                "ERROR: %s cannot be started: %s\n",
-               program.c_str(),
+               program.string().c_str(),
                std::strerror(errno));
   return kNotFound - 1;
 }

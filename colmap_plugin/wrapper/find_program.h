@@ -6,10 +6,10 @@
 
 namespace hpm {
 
-// The first executable file `name` in the folders of `search_path` (colon
-// separated; an empty entry is the current folder) behind the last folder whose
-// `name` is `self`. So a wrapper never finds itself, and two wrappers on one
-// path never find each other in turn. Empty if there is none.
+// The first executable file `name` in the folders of `search_path` (separated
+// as in PATH; an empty entry is the current folder) behind the last folder
+// whose `name` is `self`. So a wrapper never finds itself, and two wrappers on
+// one path never find each other in turn. Empty if there is none.
 std::filesystem::path FindLater(std::string_view search_path,
                                 std::string_view name,
                                 const std::filesystem::path& self);

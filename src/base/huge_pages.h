@@ -2,12 +2,11 @@
 // processor finds their addresses without walking its page tables.
 #pragma once
 
+#include "src/base/platform/pages.h"
+
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <new>
-
-#include <sys/mman.h>
 
 namespace hpm {
 
@@ -15,16 +14,10 @@ constexpr size_t kHugePage = size_t{2} << 20;  // bytes
 
 // For the whole huge pages within this memory; refusal does no harm.
 inline void WishHugePages(void* memory, size_t num_bytes) {
-#ifdef MADV_HUGEPAGE
   const auto address = reinterpret_cast<uintptr_t>(memory);
   const uintptr_t begin = (address + kHugePage - 1) / kHugePage * kHugePage;
   const uintptr_t end = (address + num_bytes) / kHugePage * kHugePage;
-  if (begin < end)
-    madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);
-#else
-  static_cast<void>(memory);
-  static_cast<void>(num_bytes);
-#endif
+  if (begin < end) WishHuge(reinterpret_cast<void*>(begin), end - begin);
 }
 
 template <class T>
@@ -39,7 +32,7 @@ struct HugePageAllocator {
     size_t bytes = count * sizeof(T);
     if (bytes < kHugePage) return static_cast<T*>(::operator new(bytes));
     bytes = (bytes + kHugePage - 1) / kHugePage * kHugePage;
-    void* memory = std::aligned_alloc(kHugePage, bytes);
+    void* memory = AllocateAligned(kHugePage, bytes);
     if (memory == nullptr) throw std::bad_alloc();
     WishHugePages(memory, bytes);
     return static_cast<T*>(memory);
@@ -49,7 +42,7 @@ struct HugePageAllocator {
     if (count * sizeof(T) < kHugePage) {
       ::operator delete(memory);
     } else {
-      std::free(memory);
+      FreeAligned(memory);
     }
   }
 

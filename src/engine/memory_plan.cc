@@ -1,14 +1,13 @@
 #include "src/engine/memory_plan.h"
 
 #include "src/base/error.h"
+#include "src/base/platform/memory.h"
 
 #include <algorithm>
 #include <fstream>
 #include <string>
 
 #include <fmt/format.h>
-#include <sys/resource.h>
-#include <unistd.h>
 
 namespace hpm {
 namespace {
@@ -32,19 +31,9 @@ uint64_t ControlGroupLimit() {
 
 uint64_t MemoryLimit() {
   uint64_t limit = ControlGroupLimit();
-  const long pages = sysconf(_SC_PHYS_PAGES);
-  const long page_bytes = sysconf(_SC_PAGESIZE);
-  if (pages > 0 && page_bytes > 0) {
-    limit = std::min(
-        limit,
-        static_cast<uint64_t>(pages) * static_cast<uint64_t>(page_bytes));
-  }
-  rlimit address_space = {};
-  if (getrlimit(RLIMIT_AS, &address_space) == 0 &&
-      address_space.rlim_cur != RLIM_INFINITY) {
-    limit = std::min(limit, static_cast<uint64_t>(address_space.rlim_cur));
-  }
-  return limit;
+  const uint64_t physical = PhysicalMemoryBytes();
+  if (physical > 0) limit = std::min(limit, physical);
+  return std::min(limit, AddressSpaceLimit());
 }
 
 uint64_t PlanCacheBytes(uint64_t asked_bytes,

@@ -1,10 +1,10 @@
 // A temporary folder of a test, and whole files written and read in one go.
 #pragma once
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <random>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -16,13 +16,11 @@ namespace hpm {
 class ScratchFolder {
  public:
   ScratchFolder() {
-    // mkdtemp() puts a name of its own in place of the six letters.
-    std::string name =
-        (std::filesystem::temp_directory_path() / "hpm_mvs_test_").string() +
-        std::string(6, 'X');
-    if (mkdtemp(name.data()) == nullptr)
-      throw std::runtime_error("cannot create " + name);
-    path_ = name;
+    std::random_device random;
+    path_ = std::filesystem::temp_directory_path() /
+            ("hpm_mvs_test_" + std::to_string(random()));
+    if (!std::filesystem::create_directory(path_))
+      throw std::runtime_error("cannot create " + path_.string());
   }
   ~ScratchFolder() {
     std::error_code ignored;

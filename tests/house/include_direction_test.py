@@ -36,7 +36,7 @@ ALLOWED = {
     "colmap_plugin/controller": OPTIONS,
     "colmap_plugin/tool": CONTROLLER,
     "colmap_plugin/in_colmap": CONTROLLER + ("colmap_plugin/tool",),
-    "colmap_plugin/wrapper": (),
+    "colmap_plugin/wrapper": BASE,
     "bench": EVERYTHING,
     "examples": LIBRARY + ("src/cpu",),
     "tests": EVERYTHING,

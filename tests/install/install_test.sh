@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# What users get: `cmake --install` into a prefix, find_package(hpm_mvs) from another
-# project, and the Debian package. usage: install_test.sh BUILD_FOLDER FOLDER
+# What users get: `cmake --install` into a prefix, and find_package(hpm_mvs) from another
+# project. usage: install_test.sh BUILD_FOLDER FOLDER
 set -euo pipefail
 build=$(realpath "${1:?usage: install_test.sh BUILD_FOLDER FOLDER}")
 work=$(realpath -m "${2:?usage: install_test.sh BUILD_FOLDER FOLDER}")
@@ -13,7 +13,7 @@ fail() { echo "FAILED: $*" >&2; exit 1; }
 echo "== cmake --install"
 cmake --install "$build" --prefix "$prefix" >"$work/install.log"
 version=$("$prefix/bin/hpm_mvs" version | sed -n 's/^hpm_mvs \([0-9.]*\),.*/\1/p')
-[[ -n $version ]] || fail "the installed program does not run"
+[[ $version == "$(<../../VERSION)" ]] || fail "the installed program does not run, or is not version $(<../../VERSION)"
 # Found by its place beside the wrapper, not by PATH.
 PATH=/usr/bin:/bin "$prefix/libexec/hpm_mvs/bin/colmap" patch_match_stereo --help | grep -q "hpm_mvs $version" ||
   fail "the installed wrapper does not find hpm_mvs"
@@ -47,7 +47,7 @@ mkdir "$work/source"
 cp consumer.cc "$work/source"
 cp consumer.cmake "$work/source/CMakeLists.txt"
 cmake -S "$work/source" -B "$work/consumer" -G Ninja -DCMAKE_PREFIX_PATH="$prefix" \
-  -DHPM_INCLUDE="$prefix/include/hpm_mvs" \
+  -DHPM_INCLUDE="$prefix/include/hpm_mvs" -DHPM_VERSION="${version%.*}" \
   -DCMAKE_BUILD_TYPE=Debug >"$work/consumer.log" 2>&1 || { tail "$work/consumer.log"; fail "configuring the consumer"; }
 cmake --build "$work/consumer" >>"$work/consumer.log" 2>&1 || { grep -A 5 -E 'error|FAILED' "$work/consumer.log" | head -n 30; fail "building the consumer or the headers alone"; }
 "$work/consumer/consumer" || fail "running the consumer"
@@ -59,20 +59,4 @@ cmake --build "$work/examples" >>"$work/examples.log" 2>&1 ||
   { grep -A 5 -E 'error|FAILED' "$work/examples.log" | head -n 30; fail "building the examples"; }
 "$work/examples/densify_three_images" || fail "running the example"
 
-echo "== the Debian package"
-command -v dpkg-shlibdeps >/dev/null || { echo "no dpkg-dev here, the package is left out"; exit 0; }
-cpack --config "$build/CPackConfig.cmake" -G DEB -B "$work/deb" >"$work/cpack.log" 2>&1 ||
-  { tail "$work/cpack.log"; fail "cpack"; }
-package=$(echo "$work"/deb/hpm-mvs_*.deb)
-[[ -f $package ]] || fail "no hpm-mvs_*.deb in $work/deb"
-dpkg-deb --field "$package" Depends | grep -q libtbb || fail "the package does not name its libraries"
-dpkg-deb --extract "$package" "$work/root"
-for file in bin/hpm_mvs libexec/hpm_mvs/bin/colmap share/man/man1/hpm_mvs.1 \
-  share/bash-completion/completions/hpm_mvs share/doc/hpm_mvs/copyright; do
-  [[ -f $work/root/usr/$file || -f $work/root/usr/$file.gz ]] || fail "/usr/$file is not in the package"
-done
-[[ ! -e $work/root/usr/include ]] || fail "headers are in the package of the programs"
-"$work/root/usr/bin/hpm_mvs" version | grep -q "$version" || fail "the packaged program does not run"
-apt-get install --simulate -qq "$package" >"$work/apt.log" 2>&1 ||
-  { cat "$work/apt.log"; fail "apt cannot resolve what the package depends on"; }
-echo "ok: $(basename "$package")"
+echo "ok: $version"

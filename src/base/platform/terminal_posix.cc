@@ -1,11 +1,19 @@
-#include "colmap_plugin/tool/standard_streams.h"
+#include "src/base/platform/terminal.h"
 
 #include <cerrno>
 
 #include <fcntl.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 namespace hpm {
+
+bool IsStandardOutputATerminal() { return isatty(STDOUT_FILENO) != 0; }
+
+int TerminalColumns() {
+  winsize size = {};
+  return ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
+}
 
 void OpenStandardStreams() {
   for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; ++fd) {

@@ -1,0 +1,17 @@
+# hpm_system_name(file result): "debian12", "ubuntu24.04" from os-release(5); empty where the
+# file is not there.
+function(hpm_system_name file result)
+  set(id "")
+  set(version "")
+  if(EXISTS ${file})
+    file(STRINGS ${file} lines REGEX "^(ID|VERSION_ID)=")
+    foreach(line ${lines})
+      if(line MATCHES "^ID=\"?([^\"]*)")
+        set(id ${CMAKE_MATCH_1})
+      elseif(line MATCHES "^VERSION_ID=\"?([^\"]*)")
+        set(version ${CMAKE_MATCH_1})
+      endif()
+    endforeach()
+  endif()
+  set(${result} "${id}${version}" PARENT_SCOPE)
+endfunction()
