@@ -2,6 +2,8 @@
 # Installs everything that hpm_mvs needs to build, test and run its demo on
 # Debian 12 or Ubuntu. Works as root and with sudo, does nothing when all is there.
 #   --colmap  also what COLMAP itself is built with, for the tests of patches/
+#   --colmap-newest  also what COLMAP 4.x is built with beside PoseLib, whose
+#             source is to be given to its CMake (patches/README.md)
 #   --arm64   also what cross-compiles for ARM and runs it, for tests/arm; exit code 77
 #             when the arm64 libraries cannot be had
 #   --release also what packages, documents and lint are made and checked with,
@@ -46,6 +48,12 @@ RELEASE_PACKAGES=(
   g++-mingw-w64-x86-64-posix wine64
 )
 
+# OpenImageIO's CMake package asks for its tools too.
+COLMAP_NEWEST_PACKAGES=(
+  "${COLMAP_PACKAGES[@]}"
+  libopenimageio-dev openimageio-tools libfaiss-dev libsuitesparse-dev libqt5svg5-dev
+)
+
 # The emulator without the package that would let the kernel start it on its own.
 ARM64_PACKAGES=(g++-aarch64-linux-gnu qemu-user)
 
@@ -54,11 +62,12 @@ check=0
 for argument in "$@"; do
   case $argument in
     --colmap) PACKAGES+=("${COLMAP_PACKAGES[@]}") ;;
+    --colmap-newest) PACKAGES+=("${COLMAP_NEWEST_PACKAGES[@]}") ;;
     --release) PACKAGES+=("${RELEASE_PACKAGES[@]}") ;;
     --arm64) arm64=1; PACKAGES+=("${ARM64_PACKAGES[@]}") ;;
     --check) check=1 ;;
     --help) sed -n '2,/^set /s/^# \{0,1\}//p' "$0"; exit 0 ;;
-    *) echo "usage: scripts/install_dependencies.sh [--colmap] [--arm64] [--release] [--check]" >&2; exit 2 ;;
+    *) echo "usage: scripts/install_dependencies.sh [--colmap] [--colmap-newest] [--arm64] [--release] [--check]" >&2; exit 2 ;;
   esac
 done
 # The arm64 libraries belong to no package manager's list.

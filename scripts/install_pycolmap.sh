@@ -1,21 +1,33 @@
 #!/usr/bin/env bash
-# The newest pycolmap wheel into .venv, for the tests that let the newest COLMAP read
-# our maps. Exit code 77 when it cannot be had; those tests are then skipped.
+# Wheels of pycolmap, for the tests that let newer COLMAP read our maps: the newest one into
+# .venv, with --before the newest of the series before into .venv-before. Exit code 77 when
+# one cannot be had; its tests are then skipped.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-if [[ -x .venv/bin/python ]] && .venv/bin/python -c 'import pycolmap' 2>/dev/null; then
-  echo "pycolmap: $(.venv/bin/python -c 'import pycolmap; print(pycolmap.__version__)') is in .venv"
-  exit 0
-fi
+version_in() { # FOLDER: the version of pycolmap that works there
+  [[ -x $1/bin/python ]] && "$1/bin/python" -c 'import pycolmap; print(pycolmap.__version__)' 2>/dev/null
+}
+install_into() { # FOLDER REQUIREMENT
+  local version
+  if version=$(version_in "$1"); then
+    echo "pycolmap: $version is in $1"
+    return
+  fi
+  if python3 -m venv "$1" >"$log" 2>&1 &&
+    "$1/bin/python" -m pip install --quiet --only-binary :all: "$2" >>"$log" 2>&1 &&
+    version=$(version_in "$1"); then
+    echo "pycolmap: installed $version into $1"
+    return
+  fi
+  echo "skipped: no wheel of $2 for this machine or no way to the registry:" >&2
+  tail -n 2 "$log" >&2
+  exit 77
+}
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
-if python3 -m venv .venv >"$log" 2>&1 &&
-  .venv/bin/python -m pip install --quiet --only-binary :all: pycolmap >>"$log" 2>&1 &&
-  .venv/bin/python -c 'import pycolmap' >>"$log" 2>&1; then
-  echo "pycolmap: installed $(.venv/bin/python -c 'import pycolmap; print(pycolmap.__version__)') into .venv"
-  exit 0
-fi
-echo "skipped: no pycolmap wheel for this machine or no way to the registry:" >&2
-tail -n 2 "$log" >&2
-exit 77
+
+install_into .venv pycolmap
+[[ ${1:-} == --before ]] || exit 0
+newest=$(version_in .venv)
+install_into .venv-before "pycolmap<${newest%.*}"

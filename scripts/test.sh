@@ -6,7 +6,7 @@ cd "$(dirname "$0")/.."
 
 scripts/install_dependencies.sh --colmap
 scripts/install_dependencies.sh --arm64 || echo "the test on ARM will be skipped"
-scripts/install_pycolmap.sh || echo "the tests with pycolmap will be skipped"
+scripts/install_pycolmap.sh --before || echo "the tests with pycolmap will be skipped"
 cmake --preset release
 cmake --build --preset release
 exec ctest --test-dir build/release --output-on-failure -j2

@@ -7,10 +7,13 @@ if(DEFINED MVS_ENABLED AND NOT MVS_ENABLED)
   message(FATAL_ERROR "HPM_MVS_DIR is given but MVS_ENABLED is off; switch it on")
 endif()
 
-# The library of COLMAP that holds the dense step: one for all in 3.8, of its own later.
+# The library of COLMAP that holds the dense step, and those that call it. All in one in
+# 3.8. Later ones forbid libraries that need each other, so ours comes between the two.
 set(hpm_colmap_library colmap)
+set(hpm_colmap_callers colmap)
 if(EXISTS ${PROJECT_SOURCE_DIR}/src/colmap/mvs)
   set(hpm_colmap_library colmap_mvs)
+  set(hpm_colmap_callers colmap_controllers colmap_exe colmap_ui)
 endif()
 
 # For all of COLMAP, as not all of it that sees mvs/patch_match.h links that library publicly.
@@ -23,8 +26,7 @@ set(HPM_BENCH OFF CACHE INTERNAL "")
 set(HPM_CUDA OFF CACHE INTERNAL "")
 add_subdirectory(${HPM_MVS_DIR} ${CMAKE_BINARY_DIR}/hpm_mvs EXCLUDE_FROM_ALL)
 
-# COLMAP's library and this one need each other; static libraries may. Ours are linked
-# privately, since our compile options are not COLMAP's.
+# Ours are linked privately, since our compile options are not COLMAP's.
 add_library(hpm_in_colmap STATIC
   ${HPM_MVS_DIR}/colmap_plugin/in_colmap/patch_match_controller.cc
   ${HPM_MVS_DIR}/colmap_plugin/in_colmap/subcommand.cc)
@@ -39,10 +41,14 @@ target_link_libraries(hpm_in_colmap
 # By property, as COLMAP's versions call target_link_libraries in two ways that do not
 # mix. Only in this build: COLMAP's installed CMake package does not know us.
 function(hpm_join_colmap)
-  set_property(TARGET ${hpm_colmap_library} APPEND PROPERTY
-    LINK_LIBRARIES $<BUILD_INTERFACE:hpm_in_colmap>)
-  set_property(TARGET ${hpm_colmap_library} APPEND PROPERTY
-    INTERFACE_LINK_LIBRARIES $<BUILD_INTERFACE:hpm_in_colmap>)
+  foreach(caller IN LISTS hpm_colmap_callers)
+    if(TARGET ${caller})
+      set_property(TARGET ${caller} APPEND PROPERTY
+        LINK_LIBRARIES $<BUILD_INTERFACE:hpm_in_colmap>)
+      set_property(TARGET ${caller} APPEND PROPERTY
+        INTERFACE_LINK_LIBRARIES $<BUILD_INTERFACE:hpm_in_colmap>)
+    endif()
+  endforeach()
   if(TARGET colmap_mvs_cuda)
     target_link_libraries(hpm_in_colmap PRIVATE colmap_mvs_cuda)
   endif()

@@ -1,4 +1,4 @@
-"""The newest COLMAP takes our maps: pycolmap reads the workspace, fuses and meshes it."""
+"""Newer COLMAP takes our maps: pycolmap reads the workspace, fuses and meshes it."""
 import os
 import pathlib
 import shutil
@@ -45,6 +45,33 @@ def read_ply(path):
 
 def positions(vertices):
     return np.stack([vertices[axis] for axis in "xyz"], axis=1).astype(np.float64)
+
+
+def meshing_works(folder):
+    """Whether this pycolmap meshes a sphere that is nothing of ours; the wheels 4.1.1 and 4.2.0
+    make NaN of it."""
+    normals = np.random.default_rng(0).normal(size=(5000, 3))
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    fields = [(name, "<f4") for name in ("x", "y", "z", "nx", "ny", "nz")]
+    fields += [(name, "u1") for name in ("red", "green", "blue")]
+    points = np.zeros(len(normals), fields)
+    for i, axis in enumerate("xyz"):
+        points[axis] = points["n" + axis] = normals[:, i]
+    kinds = {"<f4": "float", "u1": "uchar"}
+    properties = "".join(f"property {kinds[kind]} {name}\n" for name, kind in fields)
+    header = f"element vertex {len(points)}\n{properties}end_header\n"
+    header = "ply\nformat binary_little_endian 1.0\n" + header
+    cloud, mesh = folder / "sphere.ply", folder / "sphere-mesh.ply"
+    cloud.write_bytes(header.encode() + points.tobytes())
+    pycolmap.poisson_meshing(cloud, mesh, meshing_options())
+    radii = np.linalg.norm(positions(read_ply(mesh)[0]), axis=1)
+    return bool((np.abs(radii - 1) < 0.1).all())
+
+
+def meshing_options():
+    options = pycolmap.PoissonMeshingOptions()
+    options.depth, options.trim, options.num_threads = 7, 3, 1
+    return options
 
 
 class PycolmapTest(unittest.TestCase):
@@ -106,10 +133,10 @@ class PycolmapTest(unittest.TestCase):
         self.assertGreater(np.median(slopes), 0.98)
 
     def test_poisson_meshing_gives_the_plane(self):
-        options = pycolmap.PoissonMeshingOptions()
-        options.depth, options.trim, options.num_threads = 7, 3, 1
+        if not meshing_works(self.dense):
+            self.skipTest(f"Poisson meshing of pycolmap {pycolmap.__version__} is broken by itself")
         mesh = self.dense / "meshed-poisson.ply"
-        pycolmap.poisson_meshing(self.dense / "fused.ply", mesh, options)
+        pycolmap.poisson_meshing(self.dense / "fused.ply", mesh, meshing_options())
         vertices, faces = read_ply(mesh)
         self.assertGreater(faces, 1000)
         self.assertLess(np.median(np.abs(positions(vertices) @ NORMAL)), 0.02)
@@ -174,6 +201,7 @@ def write_as_rig(sparse, binary):
         assert np.abs(difference).max() < 1e-9, "COLMAP takes the poses from the rig"
 
 
+@unittest.skipUnless(hasattr(pycolmap, "Rig"), "this pycolmap knows no rigs")
 class RigTest(unittest.TestCase):
     def test_the_poses_of_rigs_count_as_in_colmap(self):
         folder = tempfile.TemporaryDirectory()
@@ -195,6 +223,12 @@ class RigTest(unittest.TestCase):
             self.assertEqual(result.stderr.count("have another pose"), int(kind != "plain"))
             path = dense / "stereo/depth_maps/view01.png.geometric.bin"
             depths[kind] = np.frombuffer(path.read_bytes()[-4 * 96 * 72 :], "<f4")
+            options = pycolmap.StereoFusionOptions()
+            options.min_num_pixels = 3
+            pycolmap.stereo_fusion(dense / "fused.ply", dense, output_type="ply", options=options)
+            vertices, _ = read_ply(dense / "fused.ply")
+            self.assertGreater(len(vertices), 1000)
+            self.assertLess(np.median(np.abs(positions(vertices) @ NORMAL)), 0.02)
         both = (depths["plain"] > 0) & (depths["bin"] > 0)
         self.assertGreater(both.mean(), 0.5)
         error = np.abs(depths["bin"] / np.where(both, depths["plain"], 1) - 1)[both]
