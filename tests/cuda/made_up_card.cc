@@ -2,8 +2,8 @@
 
 #include "cuda/check.h"
 #include "cuda/launch.h"
-#include "cuda/upsampled_prior.h"
-#include "tests/cuda/host_launch.h"
+#include "src/gpu/upsampled_prior.h"
+#include "tests/gpu/host_launch.h"
 
 #include <array>
 #include <atomic>

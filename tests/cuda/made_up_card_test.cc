@@ -2,12 +2,12 @@
 #include "tests/cuda/made_up_card.h"
 
 #include "cuda/cuda_backend.h"
-#include "cuda/self_test.h"
 #include "src/core/sampling_pattern.h"
 #include "src/cpu/cpu_backend.h"
 #include "src/engine/gpu_error.h"
-#include "tests/cuda/test_problem.h"
+#include "src/gpu/self_test.h"
 #include "tests/engine/estimate.h"
+#include "tests/gpu/test_problem.h"
 
 #include <cstring>
 #include <memory>

@@ -2,9 +2,9 @@
 // a card adds to this is its own rounding and its hardware.
 #include "src/core/sampling_pattern.h"
 #include "src/cpu/cpu_backend.h"
-#include "tests/cuda/emulated_backend.h"
-#include "tests/cuda/test_problem.h"
 #include "tests/engine/estimate.h"
+#include "tests/gpu/emulated_backend.h"
+#include "tests/gpu/test_problem.h"
 
 #include <cmath>
 #include <cstring>
