@@ -52,6 +52,11 @@ cudaError_t Called(CardCall kind) {
   return fails ? failure.error : cudaSuccess;
 }
 
+void CountSent(size_t size) {
+  const std::lock_guard<std::mutex> lock(mutex);
+  num_sent += size;
+}
+
 // Memory of the card holds rubbish until something is written.
 void* NewMemory(size_t size) {
   void* memory = std::malloc(size);
@@ -283,10 +288,7 @@ cudaError_t cudaMemcpyAsync(void* to,
                             cudaMemcpyKind kind,
                             cudaStream_t) {
   const cudaError_t status = Called(CardCall::kAny);
-  if (kind == cudaMemcpyHostToDevice) {
-    const std::lock_guard<std::mutex> lock(mutex);
-    num_sent += size;
-  }
+  if (kind == cudaMemcpyHostToDevice) hpm::CountSent(size);
   if (status == cudaSuccess) std::memcpy(to, from, size);
   return status;
 }

@@ -175,8 +175,8 @@ TEST_F(EmulationTest, PartialStartsAndScoresGiveTheBytesOfTheCpuBackend) {
 TEST_F(EmulationTest, WholeRunsGiveTheBytesOfTheCpuBackend) {
   SceneOptions scene;
   scene.num_views = 3;
-  scene.width = 57;
-  scene.height = 42;
+  scene.width = 43;
+  scene.height = 32;
   const auto views = RenderViews(MakeScene("low_texture_wall", scene), 2);
   for (const char* method : {"hpm", "acmm", "hpm_plus"}) {
     ScheduleOptions options;
