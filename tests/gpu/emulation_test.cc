@@ -185,11 +185,13 @@ TEST_F(EmulationTest, WholeRunsGiveTheBytesOfTheCpuBackend) {
     options.num_iterations = 2;
     options.num_geom_iterations = 1;
     options.num_geom_passes = 1;
+    RunSpec spec = SceneSpec(views, options);
+    spec.filter = MapFilter{{0.1f, 0.05f, 1.0f, 2}};
     WorkerPool emulated(std::make_unique<EmulatedBackend>(
         EmulationOptions{EmulatedCost::kCore, 3, 16}));
     WorkerPool cpu(MakeCpuBackend("scalar", 2));
-    const auto a = EstimateScene(&emulated, views, options, 2);
-    const auto b = EstimateScene(&cpu, views, options, 2);
+    const auto a = EstimateScene(&emulated, views, spec, 2);
+    const auto b = EstimateScene(&cpu, views, spec, 2);
     for (int i = 0; i < 2; ++i)
       EXPECT_TRUE(SameMaps(a[i], b[i])) << method << ", view " << i;
   }
