@@ -20,10 +20,9 @@ endif()
 install(DIRECTORY src colmap_plugin DESTINATION include/hpm_mvs COMPONENT development
   FILES_MATCHING PATTERN "*.h"
   PATTERN in_colmap EXCLUDE PATTERN wrapper EXCLUDE ${other_systems})
-# Of cuda/, the backend's interface with all that it includes; no more, for what lies
-# below it needs the CUDA toolkit.
-install(DIRECTORY cuda DESTINATION include/hpm_mvs COMPONENT development
-  FILES_MATCHING REGEX "/(cuda_backend|cuda_devices|device_problem|fast_math|memory_estimate|samplers)\\.h$")
+# Of cuda/, how the backend is made; what lies below it needs the CUDA toolkit.
+install(FILES cuda/cuda_backend.h cuda/cuda_devices.h
+        DESTINATION include/hpm_mvs/cuda COMPONENT development)
 
 install(FILES README.md CHANGELOG.md docs/options.md
         DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)

@@ -10,8 +10,8 @@ function(hpm_add_library name)
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:include/hpm_mvs>)
   target_link_libraries(${name} PUBLIC $<BUILD_INTERFACE:hpm_compile_options> ${ARG_DEPS}
                         PRIVATE ${ARG_PRIVATE_DEPS})
-  file(RELATIVE_PATH room ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
-  if(NOT room MATCHES "^(bench|tests)")
+  file(RELATIVE_PATH module ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
+  if(NOT module MATCHES "^(bench|tests)")
     string(REGEX REPLACE "^hpm_" "" export_name ${name})
     set_target_properties(${name} PROPERTIES EXPORT_NAME ${export_name})
     install(TARGETS ${name} EXPORT hpm_mvs-targets

@@ -1,13 +1,13 @@
 #include "cuda/cuda_backend.h"
 
-#include "cuda/band_planner.h"
 #include "cuda/device_images.h"
 #include "cuda/device_memory.h"
 #include "cuda/launch.h"
-#include "cuda/problem_tables.h"
 #include "src/base/error.h"
 #include "src/engine/phase_timer.h"
 #include "src/engine/sweeps.h"
+#include "src/gpu/band_planner.h"
+#include "src/gpu/problem_tables.h"
 
 #include <algorithm>
 #include <array>

@@ -3,8 +3,8 @@
 // card overlap their transfers and host work.
 #pragma once
 
-#include "cuda/samplers.h"
 #include "src/engine/backend.h"
+#include "src/gpu/samplers.h"
 
 #include <memory>
 #include <string>

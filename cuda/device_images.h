@@ -2,8 +2,8 @@
 #pragma once
 
 #include "cuda/device_memory.h"
-#include "cuda/samplers.h"
 #include "src/engine/view.h"
+#include "src/gpu/samplers.h"
 
 #include <cstdint>
 #include <vector>

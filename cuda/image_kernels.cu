@@ -2,8 +2,9 @@
 // images.
 #include "cuda/check.h"
 #include "cuda/launch.h"
-#include "cuda/texel_image.h"
-#include "cuda/upsampled_prior.h"
+#include "cuda/warp.h"
+#include "src/gpu/texel_image.h"
+#include "src/gpu/upsampled_prior.h"
 
 namespace hpm {
 namespace {

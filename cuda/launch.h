@@ -2,10 +2,10 @@
 // return at once and throw GpuError(kDevice) if the launch is refused.
 #pragma once
 
-#include "cuda/device_problem.h"
-#include "cuda/pixel_tiles.h"
-#include "cuda/samplers.h"
+#include "cuda/warp.h"
 #include "src/core/sweep.h"
+#include "src/gpu/device_problem.h"
+#include "src/gpu/samplers.h"
 
 #include <cuda_runtime_api.h>
 

@@ -4,9 +4,9 @@
 #pragma once
 
 #include "cuda/check.h"
-#include "cuda/lane_cost.h"
 #include "cuda/launch.h"
-#include "cuda/tuning.h"
+#include "cuda/launch_shape.h"
+#include "src/gpu/lane_cost.h"
 
 namespace hpm {
 

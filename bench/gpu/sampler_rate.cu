@@ -2,8 +2,8 @@
 #include "cuda/check.h"
 #include "cuda/device_images.h"
 #include "cuda/device_memory.h"
-#include "cuda/pixel_tiles.h"
-#include "cuda/problem_tables.h"
+#include "cuda/warp.h"
+#include "src/gpu/problem_tables.h"
 
 #include <algorithm>
 #include <vector>

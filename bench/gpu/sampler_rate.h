@@ -2,8 +2,8 @@
 // matching cost, for each way of reading: the bound of everything else.
 #pragma once
 
-#include "cuda/samplers.h"
 #include "src/engine/view.h"
+#include "src/gpu/samplers.h"
 
 namespace hpm {
 

@@ -76,6 +76,32 @@ void AddSourceProblems(const Workspace& workspace,
     problems->push_back(std::move(problem));
 }
 
+// What a user would not expect of the run that follows.
+void AnnouncePlan(const std::vector<StereoProblem>& problems,
+                  const StagePlan& plan,
+                  const ControllerOptions& options,
+                  const LogSink& log) {
+  if (!plan.damaged_maps().empty()) {
+    log(LogLevel::kWarning,
+        fmt::format("{} maps are damaged or were changed by others, and are "
+                    "computed anew, the first: {}",
+                    plan.damaged_maps().size(),
+                    plan.damaged_maps().begin()->string()));
+  }
+  const int num_sources = CountNeededSources(problems, plan);
+  if (num_sources > 0) {
+    log(LogLevel::kInfo,
+        fmt::format("{} further images are estimated, because they are sources "
+                    "of these; their maps are not published",
+                    num_sources));
+  }
+
+  if (!options.patch_match.geom_consistency) {
+    log(LogLevel::kWarning,
+        WithoutGeometryNote(FindMethod(options.hpm.method)));
+  }
+}
+
 // From now on a map is finished only if this run made it.
 void ForgetMaps(const Workspace& workspace,
                 const std::vector<StereoProblem>& problems,
@@ -167,26 +193,7 @@ RunSummary PatchMatchController::Run() {
   const Schedule schedule = MakeSchedule(MakeScheduleOptions(options_));
   StagePlan plan(workspace, problems, schedule, options_, &contents, stop);
   PrepareOutputs(workspace, problems, BytesToWrite(problems, plan), log_);
-  if (!plan.damaged_maps().empty()) {
-    log_(LogLevel::kWarning,
-         fmt::format("{} maps are damaged or were changed by others, and are "
-                     "computed anew, the first: {}",
-                     plan.damaged_maps().size(),
-                     plan.damaged_maps().begin()->string()));
-  }
-  const int num_sources = CountNeededSources(problems, plan);
-  if (num_sources > 0) {
-    log_(
-        LogLevel::kInfo,
-        fmt::format("{} further images are estimated, because they are sources "
-                    "of these; their maps are not published",
-                    num_sources));
-  }
-
-  if (!geometric) {
-    log_(LogLevel::kWarning,
-         WithoutGeometryNote(FindMethod(options_.hpm.method)));
-  }
+  AnnouncePlan(problems, plan, options_, log_);
   const RunResources resources = OpenResources(
       workspace, problems, options_, target, threads.num_threads(), log_);
   RunStatistics statistics;

@@ -1,8 +1,8 @@
 #include "colmap_plugin/controller/devices.h"
 
 #include "cuda/cuda_backend.h"
-#include "cuda/self_test.h"
 #include "src/base/error.h"
+#include "src/gpu/self_test.h"
 
 #include <algorithm>
 #include <cstdlib>

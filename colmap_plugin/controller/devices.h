@@ -4,9 +4,9 @@
 
 #include "colmap_plugin/options/options.h"
 #include "cuda/cuda_devices.h"
-#include "cuda/memory_estimate.h"
 #include "src/base/log.h"
 #include "src/engine/backend.h"
+#include "src/gpu/memory_estimate.h"
 
 #include <functional>
 #include <memory>

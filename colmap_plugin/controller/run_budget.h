@@ -2,8 +2,8 @@
 #pragma once
 
 #include "colmap_plugin/controller/stages.h"
-#include "cuda/memory_estimate.h"
 #include "src/engine/backend.h"
+#include "src/gpu/memory_estimate.h"
 
 #include <cstdint>
 #include <vector>

@@ -1,6 +1,6 @@
-// What differs between COLMAP's versions for the code of this room, and nothing
-// else of it. Compiled inside COLMAP, from C++14 (3.8 to 3.10) on; a version is
-// known by the headers it has.
+// What differs between COLMAP's versions for the code of this module, and
+// nothing else of it. Compiled inside COLMAP, from C++14 (3.8 to 3.10) on; a
+// version is known by the headers it has.
 #pragma once
 
 #if __has_include("colmap/mvs/patch_match.h")  // 3.9 and later

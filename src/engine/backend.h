@@ -1,4 +1,4 @@
-// The narrow waist between the schedule and whatever computes: CPU or CUDA.
+// The interface between the schedule and whatever computes: CPU or GPU.
 #pragma once
 
 #include "src/base/cancel.h"

@@ -1,12 +1,12 @@
 // Tests that need a card; without one each is skipped and says so.
 #include "cuda/cuda_backend.h"
 #include "cuda/cuda_devices.h"
-#include "cuda/self_test.h"
 #include "src/core/sampling_pattern.h"
 #include "src/cpu/cpu_backend.h"
 #include "src/engine/gpu_error.h"
-#include "tests/cuda/emulated_backend.h"
-#include "tests/cuda/test_problem.h"
+#include "src/gpu/self_test.h"
+#include "tests/gpu/emulated_backend.h"
+#include "tests/gpu/test_problem.h"
 
 #include <cmath>
 #include <cstring>

@@ -2,8 +2,8 @@
 
 #include "cuda/check.h"
 #include "cuda/launch.h"
-#include "cuda/upsampled_prior.h"
-#include "tests/cuda/host_launch.h"
+#include "src/gpu/upsampled_prior.h"
+#include "tests/gpu/host_launch.h"
 
 #include <array>
 #include <atomic>
@@ -50,6 +50,11 @@ cudaError_t Called(CardCall kind) {
   }
   if (fails) last_error = failure.error;
   return fails ? failure.error : cudaSuccess;
+}
+
+void CountSent(size_t size) {
+  const std::lock_guard<std::mutex> lock(mutex);
+  num_sent += size;
 }
 
 // Memory of the card holds rubbish until something is written.
@@ -283,10 +288,7 @@ cudaError_t cudaMemcpyAsync(void* to,
                             cudaMemcpyKind kind,
                             cudaStream_t) {
   const cudaError_t status = Called(CardCall::kAny);
-  if (kind == cudaMemcpyHostToDevice) {
-    const std::lock_guard<std::mutex> lock(mutex);
-    num_sent += size;
-  }
+  if (kind == cudaMemcpyHostToDevice) hpm::CountSent(size);
   if (status == cudaSuccess) std::memcpy(to, from, size);
   return status;
 }

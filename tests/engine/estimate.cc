@@ -62,18 +62,24 @@ RunSpec SceneSpec(const std::vector<RenderedView>& views,
 
 std::vector<HypothesisMap> EstimateScene(WorkerPool* workers,
                                          const std::vector<RenderedView>& views,
-                                         const ScheduleOptions& options,
+                                         const RunSpec& spec,
                                          int num_final) {
   std::vector<GrayImage> pictures;
   for (const RenderedView& view : views)
     pictures.push_back({view.camera.width, view.camera.height, view.grey});
   MemoryImageStore images(std::move(pictures));
-  const RunSpec spec = SceneSpec(views, options);
   FirstMaps store(spec, num_final);
   RunSchedule(spec, &images, &store, workers, {});
   std::vector<HypothesisMap> maps;
   for (int i = 0; i < num_final; ++i) maps.push_back(*store.map(i));
   return maps;
+}
+
+std::vector<HypothesisMap> EstimateScene(WorkerPool* workers,
+                                         const std::vector<RenderedView>& views,
+                                         const ScheduleOptions& options,
+                                         int num_final) {
+  return EstimateScene(workers, views, SceneSpec(views, options), num_final);
 }
 
 MapErrors MeasureErrors(const HypothesisMap& map, const RenderedView& truth) {

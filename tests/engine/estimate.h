@@ -20,6 +20,10 @@ RunSpec SceneSpec(const std::vector<RenderedView>& views,
 // last one only over the first `num_final`, whose maps are returned.
 std::vector<HypothesisMap> EstimateScene(WorkerPool* workers,
                                          const std::vector<RenderedView>& views,
+                                         const RunSpec& spec,
+                                         int num_final);
+std::vector<HypothesisMap> EstimateScene(WorkerPool* workers,
+                                         const std::vector<RenderedView>& views,
                                          const ScheduleOptions& options,
                                          int num_final);
 

@@ -1,5 +1,5 @@
-"""Dependencies run one way (docs/architecture.md): a room includes only itself and
-the rooms below it, and names every file by its path from the root of the repository.
+"""Dependencies run one way (docs/architecture.md): a module includes only itself
+and the modules below it, and names every file by its path from the root of the repository.
 """
 import pathlib
 import re
@@ -14,14 +14,15 @@ OUR_FOLDERS = ("src", "cuda", "colmap_plugin", "bench", "tests", "examples")
 BASE = ("src/base",)
 CORE = ("src/core",)
 LIBRARY = BASE + CORE + ("src/image", "src/prior", "src/engine")
-BACKENDS = LIBRARY + ("src/cpu", "cuda")
+GPU = LIBRARY + ("src/gpu",)
+BACKENDS = GPU + ("src/cpu", "cuda")
 FORMATS = BACKENDS + ("colmap_plugin/formats",)
 WORKSPACE = FORMATS + ("colmap_plugin/workspace",)
 OPTIONS = WORKSPACE + ("colmap_plugin/options",)
 CONTROLLER = OPTIONS + ("colmap_plugin/controller",)
 EVERYTHING = OUR_FOLDERS
 
-# Room -> what it may include, besides itself.
+# Module -> what it may include, besides itself.
 ALLOWED = {
     "src/base": (),
     "src/core": (),
@@ -29,7 +30,8 @@ ALLOWED = {
     "src/prior": BASE + CORE + ("src/image",),
     "src/engine": LIBRARY,
     "src/cpu": LIBRARY,
-    "cuda": LIBRARY,
+    "src/gpu": LIBRARY,
+    "cuda": GPU,
     "colmap_plugin/formats": BACKENDS,
     "colmap_plugin/workspace": FORMATS,
     "colmap_plugin/options": WORKSPACE,
@@ -45,8 +47,8 @@ ALLOWED = {
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 
 
-def within(path, rooms):
-    return any(path.startswith(room + "/") for room in rooms)
+def within(path, modules):
+    return any(path.startswith(module + "/") for module in modules)
 
 
 def violations(root):
@@ -56,13 +58,13 @@ def violations(root):
             if path.suffix not in SUFFIXES:
                 continue
             name = path.relative_to(root).as_posix()
-            room = next((r for r in ALLOWED if within(name, [r])), None)
-            if room is None:
-                found.append(f"{name}: lies in no known room")
+            module = next((r for r in ALLOWED if within(name, [r])), None)
+            if module is None:
+                found.append(f"{name}: lies in no known module")
                 continue
             for quote, target in INCLUDE.findall(path.read_text(encoding="utf-8")):
                 if within(target, OUR_FOLDERS):
-                    if not within(target, (room,) + ALLOWED[room]):
+                    if not within(target, (module,) + ALLOWED[module]):
                         found.append(f"{name}: must not include {target}")
                     elif not (root / target).is_file():
                         found.append(f"{name}: includes {target}, which is not there")
@@ -107,6 +109,8 @@ class TheTestItself(unittest.TestCase):
             "src/image/grey.cc": "src/prior/prior.h",
             "src/engine/run.cc": "src/cpu/backend.h",
             "src/cpu/backend.cc": "cuda/backend.h",
+            "src/cpu/views.cc": "src/gpu/tables.h",
+            "src/gpu/tables.cc": "cuda/launch.h",
             "cuda/backend.cu": "src/cpu/backend.h",
             "src/engine/files.cc": "colmap_plugin/formats/map_file.h",
             "colmap_plugin/formats/map_file.cc": "colmap_plugin/workspace/workspace.h",
@@ -130,7 +134,7 @@ class TheTestItself(unittest.TestCase):
         found = self.check({"src/core/plane.h": '#include "vec.h"\n', "src/core/vec.h": ""})
         self.assertEqual(len(found), 1)
 
-    def test_finds_an_unknown_room(self):
+    def test_finds_an_unknown_module(self):
         self.assertEqual(len(self.check({"src/attic/old.cc": ""})), 1)
 
 

@@ -1,4 +1,4 @@
-#include "cuda/memory_estimate.h"
+#include "src/gpu/memory_estimate.h"
 
 #include "src/core/geometric_term.h"
 
@@ -13,7 +13,7 @@ constexpr double kUsableShare = 0.9;
 // Tables, events, and what alignment of arrays and textures costs.
 constexpr uint64_t kOverheadBytes = 48ull << 20;
 
-// The driver keeps a stack for every thread that can be resident. Bytes as
+// NVIDIA's driver keeps a stack for every thread that can be resident. Bytes as
 // ptxas tells for the update kernels (docs/benchmarks.md), rounded up.
 constexpr uint64_t kStackBytes = 3584;
 constexpr uint64_t kThreadsPerProcessor = 2048;

@@ -2,8 +2,8 @@
 // src/core states it: what the card's form is judged by.
 #pragma once
 
-#include "cuda/pixel_cost.h"
-#include "cuda/samplers.h"
+#include "src/gpu/pixel_cost.h"
+#include "src/gpu/samplers.h"
 
 namespace hpm {
 

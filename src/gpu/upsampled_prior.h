@@ -1,7 +1,7 @@
 #pragma once
 
-#include "cuda/device_problem.h"
 #include "src/core/upsample_plane.h"
+#include "src/gpu/device_problem.h"
 
 namespace hpm {
 

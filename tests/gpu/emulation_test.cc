@@ -2,9 +2,9 @@
 // a card adds to this is its own rounding and its hardware.
 #include "src/core/sampling_pattern.h"
 #include "src/cpu/cpu_backend.h"
-#include "tests/cuda/emulated_backend.h"
-#include "tests/cuda/test_problem.h"
 #include "tests/engine/estimate.h"
+#include "tests/gpu/emulated_backend.h"
+#include "tests/gpu/test_problem.h"
 
 #include <cmath>
 #include <cstring>
@@ -175,8 +175,8 @@ TEST_F(EmulationTest, PartialStartsAndScoresGiveTheBytesOfTheCpuBackend) {
 TEST_F(EmulationTest, WholeRunsGiveTheBytesOfTheCpuBackend) {
   SceneOptions scene;
   scene.num_views = 3;
-  scene.width = 57;
-  scene.height = 42;
+  scene.width = 43;
+  scene.height = 32;
   const auto views = RenderViews(MakeScene("low_texture_wall", scene), 2);
   for (const char* method : {"hpm", "acmm", "hpm_plus"}) {
     ScheduleOptions options;
@@ -185,11 +185,13 @@ TEST_F(EmulationTest, WholeRunsGiveTheBytesOfTheCpuBackend) {
     options.num_iterations = 2;
     options.num_geom_iterations = 1;
     options.num_geom_passes = 1;
+    RunSpec spec = SceneSpec(views, options);
+    spec.filter = MapFilter{{0.1f, 0.05f, 1.0f, 2}};
     WorkerPool emulated(std::make_unique<EmulatedBackend>(
         EmulationOptions{EmulatedCost::kCore, 3, 16}));
     WorkerPool cpu(MakeCpuBackend("scalar", 2));
-    const auto a = EstimateScene(&emulated, views, options, 2);
-    const auto b = EstimateScene(&cpu, views, options, 2);
+    const auto a = EstimateScene(&emulated, views, spec, 2);
+    const auto b = EstimateScene(&cpu, views, spec, 2);
     for (int i = 0; i < 2; ++i)
       EXPECT_TRUE(SameMaps(a[i], b[i])) << method << ", view " << i;
   }

@@ -1,4 +1,4 @@
-#include "cuda/self_test.h"
+#include "src/gpu/self_test.h"
 
 #include "src/core/sampling_pattern.h"
 

@@ -2,8 +2,8 @@
 // centres; positions beyond the border get the border's value.
 #pragma once
 
-#include "cuda/device_problem.h"
-#include "cuda/fast_math.h"
+#include "src/gpu/device_instructions.h"
+#include "src/gpu/device_problem.h"
 
 namespace hpm {
 
@@ -44,9 +44,9 @@ struct TextureSampler {
                                  int layer,
                                  float u,
                                  float v) const {
-#if defined(__CUDA_ARCH__)
+#if defined(HPM_DEVICE_PASS)
     (void)view;
-    return 255 * tex2DLayered<float>(texture, u + 0.5f, v + 0.5f, layer);
+    return 255 * FilteredTexel(texture, u + 0.5f, v + 0.5f, layer);
 #else
     (void)layer;
     float fu, fv;

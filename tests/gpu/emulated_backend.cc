@@ -1,6 +1,6 @@
-#include "tests/cuda/emulated_backend.h"
+#include "tests/gpu/emulated_backend.h"
 
-#include "cuda/upsampled_prior.h"
+#include "src/gpu/upsampled_prior.h"
 
 #include <algorithm>
 

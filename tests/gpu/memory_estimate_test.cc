@@ -1,4 +1,4 @@
-#include "cuda/memory_estimate.h"
+#include "src/gpu/memory_estimate.h"
 
 #include <gtest/gtest.h>
 

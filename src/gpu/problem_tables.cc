@@ -1,4 +1,4 @@
-#include "cuda/problem_tables.h"
+#include "src/gpu/problem_tables.h"
 
 #include "src/engine/source_geometry.h"
 #include "src/engine/visit_params.h"

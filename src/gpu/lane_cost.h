@@ -3,8 +3,8 @@
 // matching cost.
 #pragma once
 
-#include "cuda/pair_cost.h"
-#include "cuda/pixel_cost.h"
+#include "src/gpu/pair_cost.h"
+#include "src/gpu/pixel_cost.h"
 
 namespace hpm {
 

@@ -2,9 +2,9 @@
 // moved by whoever owns the memory.
 #pragma once
 
-#include "cuda/device_problem.h"
 #include "src/engine/pass.h"
 #include "src/engine/view.h"
+#include "src/gpu/device_problem.h"
 
 #include <vector>
 

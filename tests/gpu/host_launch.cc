@@ -1,8 +1,8 @@
-#include "tests/cuda/host_launch.h"
+#include "tests/gpu/host_launch.h"
 
-#include "cuda/lane_cost.h"
-#include "cuda/texel_image.h"
-#include "tests/cuda/core_cost.h"
+#include "src/gpu/lane_cost.h"
+#include "src/gpu/texel_image.h"
+#include "tests/gpu/core_cost.h"
 
 namespace hpm {
 namespace {

@@ -1,7 +1,7 @@
-// What one image in flight takes on the card.
+// What one image in flight takes on a card.
 #pragma once
 
-#include "cuda/samplers.h"
+#include "src/gpu/samplers.h"
 
 #include <cstdint>
 

@@ -1,6 +1,7 @@
-// Which pixel a lane visits. The 32 lanes of a warp take the pixels of one
-// colour in a tile of 2^log_width x 64 / 2^log_width pixels, so that
-// neighbours in the image are neighbours in the warp.
+// Which pixel a lane visits. The lanes that a card runs together (a warp, a
+// wave) take the pixels of one colour in a tile of 2^log_width x 2 lanes /
+// 2^log_width pixels, so that neighbours in the image are neighbours among the
+// lanes.
 #pragma once
 
 #include "src/core/host_device.h"
@@ -9,15 +10,15 @@
 
 namespace hpm {
 
-constexpr int kWarpSize = 32;
-constexpr int kTilePixels = 2 * kWarpSize;  // of both colours
+// A band of rows of a half-sweep: one launch. kNumLanes: of a warp.
+template <int kNumLanes>
+struct TileBand {
+  static constexpr int kTilePixels = 2 * kNumLanes;  // of both colours
 
-// A band of rows of a half-sweep: one launch.
-struct Band {
   int width, height;  // of the image
   int first_row, num_rows;
   int color;
-  int log_width;  // of a tile, 1..6
+  int log_width;  // of a tile; 2..kTilePixels pixels
 
   HPM_HD_MEMBER int tile_width() const { return 1 << log_width; }
   HPM_HD_MEMBER int tile_height() const { return kTilePixels >> log_width; }
@@ -35,7 +36,8 @@ struct Pixel {
   bool inside;  // of the band and the image
 };
 
-HPM_HD Pixel PixelOf(const Band& band, int64_t warp, int lane) {
+template <int kNumLanes>
+HPM_HD Pixel PixelOf(const TileBand<kNumLanes>& band, int64_t warp, int lane) {
   const int tile_row = static_cast<int>(warp / band.tiles_per_row());
   const int tile_col = static_cast<int>(warp % band.tiles_per_row());
   const int pairs = band.tile_width() / 2;  // pixels of one colour per row

@@ -1,4 +1,4 @@
-#include "cuda/band_planner.h"
+#include "src/gpu/band_planner.h"
 
 #include <gtest/gtest.h>
 

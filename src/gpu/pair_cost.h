@@ -3,10 +3,17 @@
 // per sample and the window read from where all lanes of a warp can see it.
 #pragma once
 
-#include "cuda/samplers.h"
-#include "cuda/tuning.h"
+#include "src/gpu/samplers.h"
+
+// Rows of a window whose samples are fetched at once; the benchmark compares
+// other numbers (docs/gpu.md).
+#if !defined(HPM_ROWS)
+#define HPM_ROWS 3
+#endif
 
 namespace hpm {
+
+constexpr int kRowsAtOnce = HPM_ROWS;
 
 struct WindowSample {
   float weight, weighted;  // of RefPatch
@@ -52,13 +59,13 @@ HPM_HD float PairCost(const PatchShape& shape,
        M[7] - slope.row * view.v[2]}};
   if (!IsVisible(warp, shape, view.width, view.height)) return kMaxCost;
   float sum_s = 0, sum_ss = 0, sum_rs = 0;
-#if defined(__CUDA_ARCH__)
+#if defined(HPM_DEVICE_PASS)
 #pragma unroll kRowsAtOnce
 #endif
   for (int j = 0; j < kPatchAxis; ++j) {
     const Vec3f line =
         warp.origin + static_cast<float>(shape.offset[j]) * warp.drow;
-#if defined(__CUDA_ARCH__)
+#if defined(HPM_DEVICE_PASS)
 #pragma unroll
 #endif
     for (int i = 0; i < kPatchAxis; ++i) {

@@ -2,10 +2,10 @@
 // visits as cuda/cuda_backend.cc, with loops in place of launches.
 #pragma once
 
-#include "cuda/problem_tables.h"
 #include "src/engine/backend.h"
 #include "src/engine/sweeps.h"
-#include "tests/cuda/host_launch.h"
+#include "src/gpu/problem_tables.h"
+#include "tests/gpu/host_launch.h"
 
 #include <memory>
 #include <vector>

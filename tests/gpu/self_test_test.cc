@@ -1,7 +1,7 @@
-#include "cuda/self_test.h"
+#include "src/gpu/self_test.h"
 
 #include "src/cpu/cpu_backend.h"
-#include "tests/cuda/emulated_backend.h"
+#include "tests/gpu/emulated_backend.h"
 
 #include <cmath>
 #include <memory>

@@ -1,9 +1,9 @@
 // What a kernel of the CUDA backend does, as loops on the host.
 #pragma once
 
-#include "cuda/device_problem.h"
-#include "cuda/pixel_tiles.h"
+#include "cuda/warp.h"
 #include "src/core/sweep.h"
+#include "src/gpu/device_problem.h"
 
 #include <cstdint>
 #include <vector>

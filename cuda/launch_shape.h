@@ -9,15 +9,10 @@
 #if !defined(HPM_WARPS_PER_BLOCK)
 #define HPM_WARPS_PER_BLOCK 2
 #endif
-// Rows of a window whose samples are fetched at once.
-#if !defined(HPM_ROWS)
-#define HPM_ROWS 3
-#endif
 
 namespace hpm {
 
 constexpr int kBlocksPerProcessor = HPM_BLOCKS_PER_PROCESSOR;
 constexpr int kWarpsPerBlock = HPM_WARPS_PER_BLOCK;
-constexpr int kRowsAtOnce = HPM_ROWS;
 
 }  // namespace hpm

@@ -1,9 +1,9 @@
 // The card's form of the matching cost against the one of src/core.
-#include "cuda/lane_cost.h"
-#include "cuda/texel_image.h"
+#include "src/gpu/lane_cost.h"
+#include "src/gpu/texel_image.h"
 #include "tests/cpu/scene_views.h"
-#include "tests/cuda/core_cost.h"
-#include "tests/cuda/emulated_backend.h"
+#include "tests/gpu/core_cost.h"
+#include "tests/gpu/emulated_backend.h"
 
 #include <cmath>
 

@@ -2,7 +2,7 @@
 // the count of evaluations.
 #pragma once
 
-#include "cuda/device_problem.h"
+#include "src/gpu/device_problem.h"
 
 namespace hpm {
 
