@@ -12,8 +12,7 @@ options=(-DHPM_CUDA=OFF)
 if command -v ccache >/dev/null; then options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache); fi
 cmake --preset "$preset" "${options[@]}" >/dev/null
 cmake --build --preset "$preset" >"build/$preset/build.log" || { tail -n 20 "build/$preset/build.log"; exit 1; }
-# An allocation that fails is for the program to handle. Libraries keep what they have once
-# (tests/sanitize.supp).
+# An allocation that fails is for the program to handle.
 export ASAN_OPTIONS=allocator_may_return_null=1:detect_leaks=1
 export UBSAN_OPTIONS=print_stacktrace=1
 export TSAN_OPTIONS=halt_on_error=1:second_deadlock_stack=1

@@ -4,6 +4,7 @@
 #include "src/base/input_file.h"
 
 #include <cstdint>
+#include <new>
 #include <string>
 
 #include <opencv2/core.hpp>
@@ -192,7 +193,9 @@ std::optional<ImageSize> DecodedSize(const std::filesystem::path& path) {
     if (image.depth() == CV_16U) size.depth = SampleDepth::k16;
     if (image.depth() > CV_16U) size.depth = SampleDepth::kOther;
     return size;
-  } catch (const cv::Exception&) {
+  } catch (const cv::Exception& e) {
+    // No fault of the file's.
+    if (e.code == cv::Error::StsNoMem) throw std::bad_alloc();
     return std::nullopt;
   }
 }

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <new>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,8 @@ cv::Mat Decode(const std::filesystem::path& path, int flags) {
   try {
     if (!file.empty()) image = cv::imdecode(bytes, flags);
   } catch (const cv::Exception& e) {
+    // No fault of the file's.
+    if (e.code == cv::Error::StsNoMem) throw std::bad_alloc();
     throw Error(ErrorCode::kBadInput,
                 path.string() + ": cannot be decoded (" + e.err +
                     "); convert it to PNG or TIFF with 8 or 16 bits");

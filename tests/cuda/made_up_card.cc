@@ -52,6 +52,11 @@ cudaError_t Called(CardCall kind) {
   return fails ? failure.error : cudaSuccess;
 }
 
+void CountSent(size_t size) {
+  const std::lock_guard<std::mutex> lock(mutex);
+  num_sent += size;
+}
+
 // Memory of the card holds rubbish until something is written.
 void* NewMemory(size_t size) {
   void* memory = std::malloc(size);
@@ -74,6 +79,14 @@ struct Array {
     return data + static_cast<size_t>(j) * width * height;
   }
 };
+
+// Streams and events are counted as memory is.
+template <class Handle>
+cudaError_t MakeHandle(Handle* handle) {
+  const cudaError_t status = Called(CardCall::kAny);
+  if (status == cudaSuccess) *handle = static_cast<Handle>(NewMemory(1));
+  return status;
+}
 
 void CheckLaunch() {
   CheckCuda(Called(CardCall::kLaunch), "starting a kernel");
@@ -283,27 +296,28 @@ cudaError_t cudaMemcpyAsync(void* to,
                             cudaMemcpyKind kind,
                             cudaStream_t) {
   const cudaError_t status = Called(CardCall::kAny);
-  if (kind == cudaMemcpyHostToDevice) {
-    const std::lock_guard<std::mutex> lock(mutex);
-    num_sent += size;
-  }
+  if (kind == cudaMemcpyHostToDevice) hpm::CountSent(size);
   if (status == cudaSuccess) std::memcpy(to, from, size);
   return status;
 }
 
 cudaError_t cudaStreamCreateWithFlags(cudaStream_t* stream, unsigned) {
-  *stream = nullptr;
-  return Called(CardCall::kAny);
+  return hpm::MakeHandle(stream);
 }
-cudaError_t cudaStreamDestroy(cudaStream_t) { return cudaSuccess; }
+cudaError_t cudaStreamDestroy(cudaStream_t stream) {
+  hpm::FreeMemory(stream);
+  return cudaSuccess;
+}
 cudaError_t cudaStreamSynchronize(cudaStream_t) {
   return Called(CardCall::kAny);
 }
 cudaError_t cudaEventCreateWithFlags(cudaEvent_t* event, unsigned) {
-  *event = nullptr;
-  return Called(CardCall::kAny);
+  return hpm::MakeHandle(event);
 }
-cudaError_t cudaEventDestroy(cudaEvent_t) { return cudaSuccess; }
+cudaError_t cudaEventDestroy(cudaEvent_t event) {
+  hpm::FreeMemory(event);
+  return cudaSuccess;
+}
 cudaError_t cudaEventRecord(cudaEvent_t, cudaStream_t) {
   return Called(CardCall::kAny);
 }
