@@ -1,6 +1,12 @@
 # The three kinds of targets of this project; every folder uses only these.
 include_guard()
 
+# Sanitizers make programs slower by so much, at most.
+set(HPM_TIME_FACTOR 1)
+if(HPM_SANITIZE)
+  set(HPM_TIME_FACTOR 20)
+endif()
+
 # hpm_add_library(name SOURCES ... [DEPS ...] [PRIVATE_DEPS ...]): installed, outside of
 # bench/ and tests/, as hpm_mvs::<name without hpm_>.
 function(hpm_add_library name)
@@ -37,5 +43,6 @@ function(hpm_add_test name)
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 300)
   endif()
+  math(EXPR ARG_TIMEOUT "${ARG_TIMEOUT} * ${HPM_TIME_FACTOR}")
   set_tests_properties(${name} PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}")
 endfunction()

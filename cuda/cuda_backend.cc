@@ -2,6 +2,7 @@
 
 #include "cuda/device_images.h"
 #include "cuda/device_memory.h"
+#include "cuda/events.h"
 #include "cuda/launch.h"
 #include "src/base/error.h"
 #include "src/engine/phase_timer.h"
@@ -45,28 +46,15 @@ Read ReadBy(StartFrom start) {
 // Stream, events and the launches that are on their way.
 class LaunchQueue {
  public:
-  LaunchQueue() {
-    CheckCuda(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking),
-              "opening a stream");
-    for (auto& pair : events_) {
-      for (cudaEvent_t& event : pair) {
-        CheckCuda(cudaEventCreateWithFlags(&event, cudaEventBlockingSync),
-                  "making an event");
-      }
-    }
-  }
+  LaunchQueue() = default;
   ~LaunchQueue() {
     // Nothing may still write into memory that is about to be freed.
-    cudaStreamSynchronize(stream_);
-    for (auto& pair : events_) {
-      for (cudaEvent_t event : pair) cudaEventDestroy(event);
-    }
-    cudaStreamDestroy(stream_);
+    cudaStreamSynchronize(stream());
   }
   LaunchQueue(const LaunchQueue&) = delete;
   LaunchQueue& operator=(const LaunchQueue&) = delete;
 
-  cudaStream_t stream() const { return stream_; }
+  cudaStream_t stream() const { return stream_.get(); }
 
   // Times start(); keeps two launches on the card and hands the oldest to
   // finished(kind, rows, seconds) before it adds a third.
@@ -75,11 +63,12 @@ class LaunchQueue {
            int num_rows,
            const Start& start,
            const Finished& finished) {
-    if (pending_.size() == events_.size()) FinishOldest(finished);
-    const size_t slot = next_slot_++ % events_.size();
-    CheckCuda(cudaEventRecord(events_[slot][0], stream_), "timing a launch");
+    if (pending_.size() == marks_.size()) FinishOldest(finished);
+    const size_t slot = next_slot_++ % marks_.size();
+    const Marks& marks = marks_[slot];
+    CheckCuda(cudaEventRecord(marks.begin.get(), stream()), "timing a launch");
     start();
-    CheckCuda(cudaEventRecord(events_[slot][1], stream_), "timing a launch");
+    CheckCuda(cudaEventRecord(marks.end.get(), stream()), "timing a launch");
     pending_.push_back({kind, num_rows, slot});
   }
 
@@ -92,6 +81,11 @@ class LaunchQueue {
   void Abandon() { pending_.clear(); }
 
  private:
+  // Of a launch, in the stream.
+  struct Marks {
+    CudaEvent begin{cudaEventBlockingSync};
+    CudaEvent end{cudaEventBlockingSync};
+  };
   struct Pending {
     SweepKind kind;
     int num_rows;
@@ -102,16 +96,17 @@ class LaunchQueue {
   void FinishOldest(const Finished& finished) {
     const Pending oldest = pending_.front();
     pending_.pop_front();
-    const auto& events = events_[oldest.slot];
-    CheckCuda(cudaEventSynchronize(events[1]), "running a kernel");
+    const Marks& marks = marks_[oldest.slot];
+    CheckCuda(cudaEventSynchronize(marks.end.get()), "running a kernel");
     float milliseconds = 0;
-    CheckCuda(cudaEventElapsedTime(&milliseconds, events[0], events[1]),
-              "timing a launch");
+    CheckCuda(
+        cudaEventElapsedTime(&milliseconds, marks.begin.get(), marks.end.get()),
+        "timing a launch");
     finished(oldest.kind, oldest.num_rows, 1e-3 * milliseconds);
   }
 
-  cudaStream_t stream_ = nullptr;
-  std::array<std::array<cudaEvent_t, 2>, 2> events_ = {};
+  CudaStream stream_;
+  std::array<Marks, 2> marks_;
   std::deque<Pending> pending_;
   size_t next_slot_ = 0;
 };

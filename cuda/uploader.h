@@ -4,6 +4,7 @@
 #pragma once
 
 #include "cuda/check.h"
+#include "cuda/events.h"
 
 #include <algorithm>
 #include <array>
@@ -17,23 +18,7 @@ class Uploader {
   // Host memory that an uploader holds.
   static constexpr size_t kBytes = size_t{8} << 20;
 
-  explicit Uploader(cudaStream_t stream) : stream_(stream) {
-    for (Buffer& buffer : buffers_) {
-      CheckCuda(cudaEventCreateWithFlags(&buffer.sent, cudaEventDisableTiming),
-                "making an event");
-      // Where the system grants no such memory, the driver has to do.
-      if (cudaMallocHost(&buffer.data, kChunk) != cudaSuccess) {
-        cudaGetLastError();
-        buffer.data = nullptr;
-      }
-    }
-  }
-  ~Uploader() {
-    for (const Buffer& buffer : buffers_) {
-      cudaEventDestroy(buffer.sent);
-      if (buffer.data != nullptr) cudaFreeHost(buffer.data);
-    }
-  }
+  explicit Uploader(cudaStream_t stream) : stream_(stream) {}
   Uploader(const Uploader&) = delete;
   Uploader& operator=(const Uploader&) = delete;
 
@@ -46,7 +31,8 @@ class Uploader {
       const size_t size = std::min(kChunk, num_bytes - done);
       const char* source = static_cast<const char*>(from) + done;
       if (buffer.data != nullptr) {
-        CheckCuda(cudaEventSynchronize(buffer.sent), "copying to the card");
+        CheckCuda(cudaEventSynchronize(buffer.sent.get()),
+                  "copying to the card");
         std::memcpy(buffer.data, source, size);
         source = static_cast<const char*>(buffer.data);
       }
@@ -56,18 +42,33 @@ class Uploader {
                                 cudaMemcpyHostToDevice,
                                 stream_),
                 "copying to the card");
-      CheckCuda(cudaEventRecord(buffer.sent, stream_), "copying to the card");
+      CheckCuda(cudaEventRecord(buffer.sent.get(), stream_),
+                "copying to the card");
       done += size;
     }
   }
 
  private:
-  struct Buffer {
-    void* data = nullptr;
-    cudaEvent_t sent = nullptr;
-  };
   static constexpr size_t kNumBuffers = 2;
   static constexpr size_t kChunk = kBytes / kNumBuffers;
+
+  struct Buffer {
+    Buffer() {
+      // Where the system grants no such memory, the driver has to do.
+      if (cudaMallocHost(&data, kChunk) != cudaSuccess) {
+        cudaGetLastError();
+        data = nullptr;
+      }
+    }
+    ~Buffer() {
+      if (data != nullptr) cudaFreeHost(data);
+    }
+    Buffer(const Buffer&) = delete;
+    Buffer& operator=(const Buffer&) = delete;
+
+    CudaEvent sent{cudaEventDisableTiming};
+    void* data = nullptr;
+  };
 
   cudaStream_t stream_;
   std::array<Buffer, kNumBuffers> buffers_;

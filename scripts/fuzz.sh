@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
-# Fuzzes the readers of files that come from elsewhere, each for SECONDS (default 60), with
-# address and undefined-behaviour sanitizers. What is found stays in build/fuzz/findings, the
+# Fuzzes the readers of files that come from elsewhere, and the matching cost of all SIMD
+# targets, each for SECONDS (default 60), with address and undefined-behaviour sanitizers. What is found stays in build/fuzz/findings, the
 # corpus grows in build/fuzz/corpus. Exit code 77 without clang.
 # usage: scripts/fuzz.sh [SECONDS] [READER...]
 set -euo pipefail
 cd "$(dirname "$0")/.."
 seconds=${1:-60}
 readers=("${@:2}")
-((${#readers[@]} > 0)) || readers=(map graph cfg image_size model_binary model_text pmvs)
+((${#readers[@]} > 0)) || readers=(map graph cfg image_size model_binary model_text pmvs stamp lock project_file cost)
 command -v clang++ >/dev/null || { echo "skipped: clang++ is not installed" >&2; exit 77; }
 build=build/fuzz
 options=()

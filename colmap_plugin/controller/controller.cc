@@ -19,6 +19,7 @@
 #include "colmap_plugin/workspace/source_problems.h"
 #include "colmap_plugin/workspace/stamp.h"
 #include "src/base/error.h"
+#include "src/base/retries.h"
 #include "src/engine/run_schedule.h"
 
 #include <algorithm>
@@ -166,6 +167,8 @@ RunSummary PatchMatchController::Run() {
   const auto start = std::chrono::steady_clock::now();
   const ThreadSupply threads(options_.patch_match.num_threads, log_);
   const CpuTarget target = FindCpuTarget(options_.hpm.cpu_target);
+
+  const RetryScope retries(log_, &cancel_);
 
   log_(LogLevel::kInfo, "Reading workspace...");
   Workspace workspace(options_.workspace, log_);

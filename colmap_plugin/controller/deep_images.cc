@@ -2,10 +2,11 @@
 
 #include "colmap_plugin/controller/run_budget.h"
 #include "colmap_plugin/formats/atomic_file.h"
+#include "src/base/error.h"
+#include "src/base/input_file.h"
 #include "src/engine/memory_plan.h"
 
 #include <algorithm>
-#include <fstream>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,9 @@
 namespace hpm {
 namespace fs = std::filesystem;
 namespace {
+
+// Some hundred thousand images.
+constexpr uint64_t kMaxRecordBytes = 32 << 20;
 
 struct DeepImage {
   int index = 0;
@@ -49,9 +53,14 @@ fs::path RecordPath(const Workspace& workspace) {
 
 // Whatever is wrong with the record, the images are measured anew.
 void ReadRecord(const Workspace& workspace, std::vector<DeepImage>* images) {
-  std::ifstream file(RecordPath(workspace));
+  std::string text;
+  try {
+    text = ReadWholeFile(RecordPath(workspace), kMaxRecordBytes);
+  } catch (const Error&) {
+    return;
+  }
   const nlohmann::json json =
-      nlohmann::json::parse(file, nullptr, /*allow_exceptions=*/false);
+      nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
   if (!json.is_object()) return;
   for (DeepImage& image : *images) {
     const auto it = json.find(image.key);

@@ -6,6 +6,7 @@
 #include "colmap_plugin/formats/map_file.h"
 #include "colmap_plugin/workspace/source_level.h"
 #include "colmap_plugin/workspace/stamp.h"
+#include "src/base/retries.h"
 #include "src/engine/phase_timer.h"
 
 #include <filesystem>
@@ -143,7 +144,7 @@ void FileMapStore::WriteFiles(int stage,
     std::error_code ignored;
     std::filesystem::remove(files.graph, ignored);
   }
-  WriteMaps(stage, problem, output, stamp, result);
+  RetryWriting([&] { WriteMaps(stage, problem, output, stamp, result); });
   if (plan_.WritesGraph(stage, image))
     stamp->files["graph"] = WriteGraph(stage, problem, output);
   if (options_.hpm.previews && output.is_final) {

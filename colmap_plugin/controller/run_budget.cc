@@ -20,7 +20,8 @@ uint64_t DecodedBytes(const Workspace& workspace, int image) {
     return static_cast<uint64_t>((side + decoding.reduction - 1) /
                                  decoding.reduction);
   };
-  return bytes_per_pixel * decoded(size->width) * decoded(size->height);
+  return size->file_bytes +
+         bytes_per_pixel * decoded(size->width) * decoded(size->height);
 }
 
 MemoryNeeds LargestNeeds(const Workspace& workspace,

@@ -1,6 +1,7 @@
 #include "colmap_plugin/formats/atomic_file.h"
 
 #include "src/base/error.h"
+#include "src/base/retries.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -57,8 +58,15 @@ fs::path TemporaryBeside(const fs::path& path) {
 }
 
 int OpenTemporary(const fs::path& path) {
-  return open(
-      path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+  constexpr int kFlags = O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
+  return RetryCall(path, [&] {
+    const int fd = open(path.c_str(), kFlags, 0666);
+    if (fd >= 0 || errno != EEXIST) return fd;
+    // Left by a dead process that had the same id (usual in containers), by an
+    // earlier try whose answer was lost, or a planted link.
+    unlink(path.c_str());
+    return open(path.c_str(), kFlags, 0666);
+  });
 }
 
 // The process id at the end of the name of a temporary of this host, else 0.
@@ -75,17 +83,10 @@ pid_t OwnerOfTemporary(const std::string& name, const std::string& infix) {
 }  // namespace
 
 AtomicFile::AtomicFile(const fs::path& path) : path_(path) {
-  std::error_code error;
-  fs::create_directories(ParentFolder(path), error);
+  const std::error_code error = MakeFolder(ParentFolder(path));
   if (error) Throw("create the folder of", error.value());
   const fs::path temporary = TemporaryBeside(path);
   fd_ = OpenTemporary(temporary);
-  if (fd_ < 0 && errno == EEXIST) {
-    // Left by a dead process that had the same id (usual in containers), or a
-    // planted link.
-    unlink(temporary.c_str());
-    fd_ = OpenTemporary(temporary);
-  }
   if (fd_ < 0) Throw("create a temporary file beside", errno);
   temporary_ = temporary;
 }
@@ -118,7 +119,7 @@ void AtomicFile::WriteAll(const void* data,
     const ssize_t n = write_some(bytes, num_bytes);
     if (n < 0) {
       if (errno == EINTR) continue;
-      Throw("write", errno);
+      ThrowUnwritten(errno);
     }
     bytes += n;
     num_bytes -= static_cast<size_t>(n);
@@ -131,33 +132,61 @@ void AtomicFile::Flush() {
   do {
     result = fsync(fd_);
   } while (result != 0 && errno == EINTR);
-  if (result != 0) Throw("write", errno);
+  if (result != 0) ThrowUnwritten(errno);
 }
 
 FileState AtomicFile::Commit() {
   Flush();
   const std::optional<FileState> state = StateOf(fd_);
-  if (!state) Throw("write", errno);
+  if (!state) ThrowUnwritten(errno);
   // Linux closes the descriptor even if close() fails. EINTR is harmless after
   // fsync.
   const int fd = fd_;
   fd_ = -1;
-  if (close(fd) != 0 && errno != EINTR) Throw("write", errno);
-  if (std::rename(temporary_.c_str(), path_.c_str()) != 0)
-    Throw("put in place", errno);
+  if (close(fd) != 0 && errno != EINTR) ThrowUnwritten(errno);
+  if (!Rename(*state)) Throw("put in place", errno);
   temporary_.clear();
 
-  const int folder =
-      open(ParentFolder(path_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const fs::path folder_path = ParentFolder(path_);
+  const int folder = RetryCall(folder_path, [&] {
+    return open(folder_path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  });
   if (folder < 0) return *state;  // a folder that may be written but not listed
-  const int error = fsync(folder) == 0 ? 0 : errno;
+  const int result = RetryCall(folder_path, [&] { return fsync(folder); });
+  const int error = result == 0 ? 0 : errno;
   close(folder);
   // Some network file systems cannot sync a folder: then rename is all there
   // is.
-  if (error != 0 && error != EINVAL && error != ENOTSUP && error != EINTR) {
+  if (error != 0 && error != EINVAL && error != ENOTSUP) {
     Throw("sync the folder of", error);
   }
   return *state;
+}
+
+bool AtomicFile::Rename(const FileState& state) const {
+  bool is_first = true;
+  const int result = RetryCall(path_, [&] {
+    const int once = std::rename(temporary_.c_str(), path_.c_str());
+    // The answer to an earlier try may have been lost.
+    const bool was_renamed =
+        once != 0 && errno == ENOENT && !is_first && StateOf(path_) == state;
+    is_first = false;
+    return was_renamed ? 0 : once;
+  });
+  return result == 0;
+}
+
+// The bytes that the kernel took before may be lost, too, so it is not enough
+// to try the same call again.
+void AtomicFile::ThrowUnwritten(int error) const {
+  if (!IsTransient(error)) Throw("write", error);
+  throw TransientError(
+      error,
+      path_,
+      fmt::format("cannot write {}: {}; check the disk or its server and run "
+                  "again",
+                  path_.string(),
+                  std::generic_category().message(error)));
 }
 
 void AtomicFile::Throw(const char* action, int error) const {
@@ -207,9 +236,11 @@ void AtomicFile::Throw(const char* action, int error) const {
 }
 
 void WriteFileAtomically(const fs::path& path, std::string_view contents) {
-  AtomicFile file(path);
-  file.Write(contents);
-  file.Commit();
+  RetryWriting([&] {
+    AtomicFile file(path);
+    file.Write(contents);
+    file.Commit();
+  });
 }
 
 void RemoveStaleTemporaries(const fs::path& folder) {

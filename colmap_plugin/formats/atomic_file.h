@@ -1,8 +1,10 @@
 // A file appears complete or not at all: temporary file in the same folder,
 // every write checked, fsync, rename, fsync of the folder.
 // Errors: kOutOfResources for a full disk, a quota or a file size limit;
-// kBadInput for a folder that cannot be written; kFailure for the rest. The
-// program must ignore SIGXFSZ, otherwise a file size limit kills it.
+// kBadInput for a folder that cannot be written; kFailure for the rest, as
+// TransientError (retries.h) where the whole file may be written again: what
+// this file does by itself is retried by itself. The program must ignore
+// SIGXFSZ, otherwise a file size limit kills it.
 #pragma once
 
 #include "colmap_plugin/formats/published_file.h"
@@ -44,6 +46,8 @@ class AtomicFile {
                 size_t num_bytes,
                 const WriteSome& write_some);
   [[noreturn]] void Throw(const char* action, int error) const;
+  [[noreturn]] void ThrowUnwritten(int error) const;
+  bool Rename(const FileState& state) const;
 
   std::filesystem::path path_;
   std::filesystem::path temporary_;  // empty once it was renamed
@@ -51,6 +55,7 @@ class AtomicFile {
   std::atomic<uint64_t> num_written_{0};
 };
 
+// Retries what passes.
 void WriteFileAtomically(const std::filesystem::path& path,
                          std::string_view contents);
 

@@ -4,7 +4,8 @@
 // at fault.
 #pragma once
 
-#include "colmap_plugin/formats/input_file.h"
+#include "colmap_plugin/formats/input_cursor.h"
+#include "src/base/input_file.h"
 
 #include <cstring>
 #include <string>

@@ -3,8 +3,9 @@
 #include "colmap_plugin/formats/atomic_file.h"
 #include "colmap_plugin/formats/content_hash.h"
 #include "colmap_plugin/formats/grid_header.h"
-#include "colmap_plugin/formats/input_file.h"
 #include "src/base/error.h"
+#include "src/base/input_file.h"
+#include "src/base/retries.h"
 
 #include <fmt/format.h>
 
@@ -66,14 +67,17 @@ PublishedFile WriteConsistencyGraph(const std::filesystem::path& path,
                             "this",
                             path.string()));
   }
-  AtomicFile file(path);
   const std::string header = FormatGridHeader(graph.width, graph.height, 1);
   const size_t data_bytes = graph.data.size() * sizeof(int32_t);
-  file.Write(header);
-  file.Write(graph.data.data(), data_bytes);
   ContentHash hash;
   hash.Add(header.data(), header.size()).Add(graph.data.data(), data_bytes);
-  return {file.Commit(), hash.Hex()};
+  const FileState state = RetryWriting([&] {
+    AtomicFile file(path);
+    file.Write(header);
+    file.Write(graph.data.data(), data_bytes);
+    return file.Commit();
+  });
+  return {state, hash.Hex()};
 }
 
 }  // namespace hpm

@@ -1,6 +1,6 @@
 #include "colmap_plugin/formats/content_hash.h"
 
-#include "colmap_plugin/formats/input_file.h"
+#include "src/base/input_file.h"
 
 #include <new>
 #include <vector>

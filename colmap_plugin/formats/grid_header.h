@@ -2,7 +2,7 @@
 // begin at the byte after the third '&'.
 #pragma once
 
-#include "colmap_plugin/formats/input_file.h"
+#include "src/base/input_file.h"
 
 #include <string>
 

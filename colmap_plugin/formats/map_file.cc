@@ -2,6 +2,7 @@
 
 #include "colmap_plugin/formats/grid_header.h"
 #include "src/base/error.h"
+#include "src/base/retries.h"
 
 #include <algorithm>
 #include <cmath>
@@ -182,12 +183,14 @@ PublishedFile MapWriter::Commit() {
 PublishedFile WriteMap(const std::filesystem::path& path, const Map& map) {
   CheckSize(path, map);
   const size_t num_pixels = map.data.size() / map.channels;
-  MapWriter writer(path, {map.width, map.height, map.channels});
-  for (int channel = 0; channel < map.channels; ++channel) {
-    writer.WriteRows(
-        channel, 0, map.height, map.data.data() + channel * num_pixels);
-  }
-  return writer.Commit();
+  return RetryWriting([&] {
+    MapWriter writer(path, {map.width, map.height, map.channels});
+    for (int channel = 0; channel < map.channels; ++channel) {
+      writer.WriteRows(
+          channel, 0, map.height, map.data.data() + channel * num_pixels);
+    }
+    return writer.Commit();
+  });
 }
 
 }  // namespace hpm

@@ -4,7 +4,7 @@
 
 #include "colmap_plugin/formats/atomic_file.h"
 #include "colmap_plugin/formats/content_hash.h"
-#include "colmap_plugin/formats/input_file.h"
+#include "src/base/input_file.h"
 
 #include <filesystem>
 #include <vector>

@@ -3,6 +3,7 @@
 #include "colmap_plugin/formats/pmvs.h"
 #include "colmap_plugin/formats/text_reader.h"
 #include "src/base/error.h"
+#include "src/base/retries.h"
 
 #include <limits>
 
@@ -182,8 +183,7 @@ SparseModel ReadProjections(const fs::path& folder,
   SparseModel model;
   for (int i = 0;; ++i) {
     const fs::path image_path = folder / "visualize" / ImageName(i);
-    std::error_code ignored;
-    if (!fs::exists(image_path, ignored)) return model;
+    if (!Exists(image_path)) return model;
     WordReader words(folder / "txt" / fmt::format("{:08d}.txt", i));
     if (words.Next() != "CONTOUR") words.Fail("expected CONTOUR");
     Eigen::Matrix<double, 3, 4> projection;
@@ -218,11 +218,10 @@ std::vector<std::vector<int>> ReadVisDat(const fs::path& path, int num_images) {
 
 PmvsModel ReadPmvsModel(const fs::path& folder,
                         const ImageSizeReader& image_size) {
-  std::error_code ignored;
   PmvsModel model;
-  if (fs::exists(folder / "bundle.rd.out", ignored)) {
+  if (Exists(folder / "bundle.rd.out")) {
     model.sparse = ReadBundle(folder, image_size);
-  } else if (fs::exists(folder / "vis.dat", ignored)) {
+  } else if (Exists(folder / "vis.dat")) {
     model.sparse = ReadProjections(folder, image_size);
     model.visible_images = ReadVisDat(
         folder / "vis.dat", static_cast<int>(model.sparse.images.size()));

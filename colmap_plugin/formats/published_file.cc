@@ -1,5 +1,7 @@
 #include "colmap_plugin/formats/published_file.h"
 
+#include "src/base/retries.h"
+
 #include <sys/stat.h>
 
 namespace hpm {
@@ -20,7 +22,8 @@ std::optional<FileState> StateFrom(int result, const struct stat& status) {
 
 std::optional<FileState> StateOf(const std::filesystem::path& path) {
   struct stat status = {};
-  const int result = stat(path.c_str(), &status);
+  const int result =
+      RetryCall(path, [&] { return stat(path.c_str(), &status); });
   return StateFrom(result, status);
 }
 

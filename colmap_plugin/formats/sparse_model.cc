@@ -3,6 +3,7 @@
 #include "colmap_plugin/formats/frame_poses.h"
 #include "colmap_plugin/formats/sparse_model_io.h"
 #include "src/base/error.h"
+#include "src/base/retries.h"
 
 #include <fmt/format.h>
 
@@ -38,11 +39,6 @@ fs::path FilePath(const fs::path& folder,
                   const char* stem,
                   const Encoding& encoding) {
   return folder / (std::string(stem) + encoding.extension);
-}
-
-bool Exists(const fs::path& path) {
-  std::error_code ignored;
-  return fs::exists(path, ignored);
 }
 
 bool IsComplete(const fs::path& folder, const Encoding& encoding) {

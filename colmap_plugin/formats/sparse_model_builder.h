@@ -5,7 +5,7 @@
 // Errors are raised at the cursor of the record.
 #pragma once
 
-#include "colmap_plugin/formats/input_file.h"
+#include "colmap_plugin/formats/input_cursor.h"
 #include "colmap_plugin/formats/model_pose.h"
 #include "colmap_plugin/formats/sparse_model.h"
 

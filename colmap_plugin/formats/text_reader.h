@@ -3,7 +3,8 @@
 // and line.
 #pragma once
 
-#include "colmap_plugin/formats/input_file.h"
+#include "colmap_plugin/formats/input_cursor.h"
+#include "src/base/input_file.h"
 #include "src/base/platform/numbers.h"
 
 #include <cmath>

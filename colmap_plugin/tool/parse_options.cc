@@ -1,9 +1,9 @@
 #include "colmap_plugin/tool/parse_options.h"
 
-#include "colmap_plugin/formats/input_file.h"
 #include "colmap_plugin/options/quality.h"
 #include "colmap_plugin/tool/text.h"
 #include "src/base/error.h"
+#include "src/base/input_file.h"
 
 #include <cstdint>
 #include <map>
@@ -173,19 +173,7 @@ ParsedOptions ParseProjectFile(const std::string& path) {
   ParsedOptions result;
   Interpreter interpreter(&result);
   try {
-    const InputFile input(path);
-    if (input.size() > kMaxProjectFileBytes) {
-      interpreter.Problem(
-          fmt::format("{}: has {} bytes, a project file has at most {}; check "
-                      "--project_path",
-                      path,
-                      input.size(),
-                      kMaxProjectFileBytes));
-      return result;
-    }
-    std::string text(input.size(), '\0');
-    text.resize(input.ReadAt(0, text.data(), text.size()));
-    std::istringstream file(text);
+    std::istringstream file(ReadWholeFile(path, kMaxProjectFileBytes));
     interpreter.Take(
         po::parse_config_file(file, Describe(), /*allow_unregistered=*/true),
         path + ": ");

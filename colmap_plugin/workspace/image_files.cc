@@ -1,6 +1,7 @@
 #include "colmap_plugin/workspace/image_files.h"
 
 #include "colmap_plugin/formats/image_name.h"
+#include "src/base/retries.h"
 
 #include <algorithm>
 #include <vector>
@@ -16,11 +17,6 @@ std::string Lower(std::string text) {
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
   }
   return text;
-}
-
-bool IsFile(const fs::path& path) {
-  std::error_code ignored;
-  return fs::is_regular_file(path, ignored);
 }
 
 // The first entry, by name, of the file's folder for which `fits` holds; empty
@@ -43,10 +39,10 @@ std::string FindBeside(const fs::path& path, Fits fits) {
 ImageFile FindImageFile(const fs::path& folder, const std::string& name) {
   ImageFile file;
   file.path = folder / name;
-  file.exists = IsFile(file.path);
+  file.exists = IsRegularFile(file.path);
   const std::string slashed = WithSlashes(name);
   if (!file.exists && slashed != name && IsImageName(slashed) &&
-      IsFile(folder / slashed)) {
+      IsRegularFile(folder / slashed)) {
     file.path = folder / slashed;
     file.exists = true;
   }
@@ -88,7 +84,7 @@ std::string WhyMissing(const fs::path& folder, const std::string& name) {
         "and of the files must be the same",
         QuotedName(other_type));
   }
-  if (IsFile(folder / path.filename())) {
+  if (IsRegularFile(folder / path.filename())) {
     return fmt::format(
         "{} is there; names in the sparse model must be "
         "relative to {}",

@@ -1,9 +1,10 @@
 #include "colmap_plugin/workspace/image_size.h"
 
-#include <array>
+#include "src/base/error.h"
+#include "src/base/input_file.h"
+
 #include <cstdint>
-#include <cstring>
-#include <fstream>
+#include <new>
 #include <string>
 
 #include <opencv2/core.hpp>
@@ -12,33 +13,49 @@
 namespace hpm {
 namespace {
 
+// What OpenCV can be given at once.
+constexpr uint64_t kMaxDecodedBytes = INT32_MAX;
+
 // A file of untrusted bytes. Reading past the end makes it not ok() and gives
 // zeros.
 class HeaderReader {
  public:
-  explicit HeaderReader(const std::filesystem::path& path)
-      : file_(path, std::ios::binary) {}
+  explicit HeaderReader(const std::filesystem::path& path) : file_(path) {}
 
-  bool ok() const { return file_.good(); }
-  void Seek(uint64_t offset) {
-    file_.seekg(static_cast<std::streamoff>(offset));
-  }
-  void Skip(uint32_t num_bytes) { file_.seekg(num_bytes, std::ios::cur); }
+  bool ok() const { return ok_; }
+  uint64_t file_bytes() const { return file_.size(); }
+  void Seek(uint64_t offset) { offset_ = offset; }
+  void Skip(uint32_t num_bytes) { offset_ += num_bytes; }
 
-  uint32_t Read(int num_bytes, bool big_endian) {
-    std::array<char, 4> bytes{};
-    file_.read(bytes.data(), num_bytes);
-    if (!file_) return 0;
-    uint32_t value = 0;
-    for (int i = 0; i < num_bytes; ++i) {
-      const int shift = 8 * (big_endian ? num_bytes - 1 - i : i);
-      value |= static_cast<uint32_t>(static_cast<uint8_t>(bytes[i])) << shift;
+  uint32_t Read(uint32_t num_bytes, bool big_endian) {
+    if (!ok_ || offset_ > file_.size() || file_.size() - offset_ < num_bytes)
+      ok_ = false;
+    if (!ok_) return 0;
+    if (offset_ < begin_ || offset_ + num_bytes > begin_ + part_.size()) {
+      begin_ = offset_;
+      part_.resize(kPartBytes);
+      part_.resize(file_.ReadAt(begin_, part_.data(), part_.size()));
+      if (part_.size() < num_bytes) ok_ = false;
+      if (!ok_) return 0;
     }
+    uint32_t value = 0;
+    for (uint32_t i = 0; i < num_bytes; ++i) {
+      const uint32_t shift = 8 * (big_endian ? num_bytes - 1 - i : i);
+      value |= uint32_t{static_cast<uint8_t>(part_[offset_ - begin_ + i])}
+               << shift;
+    }
+    offset_ += num_bytes;
     return value;
   }
 
  private:
-  std::ifstream file_;
+  static constexpr size_t kPartBytes = 4096;
+
+  InputFile file_;
+  bool ok_ = true;
+  uint64_t offset_ = 0;
+  uint64_t begin_ = 0;  // of the part of the file that is here
+  std::string part_;
 };
 
 std::optional<ImageSize> MakeSize(const HeaderReader& reader,
@@ -168,15 +185,31 @@ std::optional<ImageSize> TiffSize(HeaderReader& reader, bool big_endian) {
 
 std::optional<ImageSize> DecodedSize(const std::filesystem::path& path) {
   try {
-    const cv::Mat image = cv::imread(path.string(), cv::IMREAD_UNCHANGED);
+    std::string file = ReadWholeFile(path, kMaxDecodedBytes);
+    const cv::Mat bytes(1, static_cast<int>(file.size()), CV_8U, file.data());
+    const cv::Mat image = cv::imdecode(bytes, cv::IMREAD_UNCHANGED);
     if (image.empty()) return std::nullopt;
     ImageSize size = {image.cols, image.rows};
     if (image.depth() == CV_16U) size.depth = SampleDepth::k16;
     if (image.depth() > CV_16U) size.depth = SampleDepth::kOther;
     return size;
-  } catch (const cv::Exception&) {
+  } catch (const cv::Exception& e) {
+    // No fault of the file's.
+    if (e.code == cv::Error::StsNoMem) throw std::bad_alloc();
     return std::nullopt;
   }
+}
+
+// By the file's first bytes.
+std::optional<ImageSize> SizeFromHeader(HeaderReader& reader) {
+  const uint32_t magic = reader.Read(4, true);
+  if (!reader.ok()) return std::nullopt;
+  if (magic >> 16 == 0xffd8) return JpegSize(reader);
+  if (magic == 0x89504e47u) return PngSize(reader);
+  if (magic >> 16 == 0x424d) return BmpSize(reader);
+  if (magic == 0x49492a00u) return TiffSize(reader, /*big_endian=*/false);
+  if (magic == 0x4d4d002au) return TiffSize(reader, /*big_endian=*/true);
+  return std::nullopt;
 }
 
 }  // namespace
@@ -188,19 +221,16 @@ bool IsImageSize(unsigned long long width, unsigned long long height) {
 }
 
 std::optional<ImageSize> ReadImageSize(const std::filesystem::path& path) {
-  // A pipe or device of that name would block or never end.
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) return std::nullopt;
-  HeaderReader reader(path);
-  const uint32_t magic = reader.Read(4, true);
-  if (!reader.ok()) return std::nullopt;
-  std::optional<ImageSize> size;
-  if (magic >> 16 == 0xffd8) size = JpegSize(reader);
-  if (magic == 0x89504e47u) size = PngSize(reader);
-  if (magic >> 16 == 0x424d) size = BmpSize(reader);
-  if (magic == 0x49492a00u) size = TiffSize(reader, /*big_endian=*/false);
-  if (magic == 0x4d4d002au) size = TiffSize(reader, /*big_endian=*/true);
-  return size ? size : DecodedSize(path);
+  try {
+    HeaderReader reader(path);
+    std::optional<ImageSize> size = SizeFromHeader(reader);
+    // Too short for anything.
+    if (!size && reader.file_bytes() >= 4) size = DecodedSize(path);
+    if (size) size->file_bytes = reader.file_bytes();
+    return size;
+  } catch (const Error&) {
+    return std::nullopt;  // missing, a folder, a pipe, unreadable
+  }
 }
 
 }  // namespace hpm

@@ -4,6 +4,7 @@
 // not its extension.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 
@@ -22,6 +23,7 @@ struct ImageSize {
   int height = 0;
   SampleDepth depth = SampleDepth::k8;
   bool is_jpeg = false;
+  uint64_t file_bytes = 0;
 };
 
 // Positive and within the limits above.

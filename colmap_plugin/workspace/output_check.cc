@@ -6,6 +6,7 @@
 #include "colmap_plugin/formats/text_reader.h"
 #include "colmap_plugin/workspace/stamp.h"
 #include "src/base/error.h"
+#include "src/base/retries.h"
 
 #include <filesystem>
 #include <set>
@@ -124,8 +125,7 @@ void PrepareOutputs(const Workspace& workspace,
   }
   CheckFreeSpace(*folders.begin(), num_bytes);
 
-  std::error_code error;
-  if (!fs::exists(workspace.FusionCfgPath(), error)) {
+  if (!Exists(workspace.FusionCfgPath())) {
     std::vector<std::string> names;
     for (const StereoProblem& problem : problems) {
       if (problem.is_reference)

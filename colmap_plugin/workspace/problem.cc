@@ -6,6 +6,7 @@
 #include "colmap_plugin/workspace/cfg_check.h"
 #include "colmap_plugin/workspace/depth_range.h"
 #include "src/base/error.h"
+#include "src/base/retries.h"
 
 #include <algorithm>
 #include <limits>
@@ -108,8 +109,7 @@ class ProblemReader {
 
  private:
   PatchMatchCfg ReadCfg() const {
-    std::error_code ignored;
-    if (!std::filesystem::exists(path_, ignored)) {
+    if (!Exists(path_)) {
       throw Error(ErrorCode::kBadInput,
                   fmt::format("{} is missing: it lists the images to compute; "
                               "give it back, run image_undistorter, or write "

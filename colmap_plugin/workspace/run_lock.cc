@@ -3,6 +3,7 @@
 #include "colmap_plugin/formats/image_name.h"
 #include "colmap_plugin/workspace/lock_owner.h"
 #include "src/base/error.h"
+#include "src/base/retries.h"
 #include "src/base/threads.h"
 
 #include <algorithm>
@@ -47,7 +48,10 @@ int OpenLock(const fs::path& path) {
 // Nothing if it cannot be read.
 std::optional<std::string> ReadAll(int fd) {
   std::string text(kMaxLockBytes, '\0');
-  const ssize_t n = pread(fd, text.data(), text.size(), 0);
+  ssize_t n;
+  do {
+    n = pread(fd, text.data(), text.size(), 0);
+  } while (n < 0 && errno == EINTR);
   if (n < 0) return std::nullopt;
   text.resize(static_cast<size_t>(n));
   return text;
@@ -81,12 +85,13 @@ bool IsSameFile(int fd, const fs::path& path) {
 
 [[noreturn]] void ThrowSystemError(const fs::path& path, int error) {
   const bool full = error == ENOSPC || error == EDQUOT || error == EFBIG;
-  throw Error(
-      full ? ErrorCode::kOutOfResources : ErrorCode::kBadInput,
-      fmt::format("cannot write {}: {}; {}",
-                  path.string(),
-                  std::generic_category().message(error),
-                  full ? "make room on the disk" : "make the folder writable"));
+  throw Error(full ? ErrorCode::kOutOfResources : ErrorCode::kBadInput,
+              fmt::format("cannot write {}: {}; {}",
+                          path.string(),
+                          std::generic_category().message(error),
+                          full                 ? "make room on the disk"
+                          : IsTransient(error) ? "check the disk or its server"
+                                               : "make the folder writable"));
 }
 
 [[noreturn]] void ThrowCannotRead(const fs::path& path, int error) {
@@ -136,12 +141,12 @@ RunLock::RunLock(const fs::path& state_path,
                  CancelToken* stop,
                  const LockRules& rules)
     : path_(state_path / "lock"), stop_(stop), rules_(rules) {
-  std::error_code error;
-  fs::create_directories(state_path, error);
+  const std::error_code error = MakeFolder(state_path);
   if (error) ThrowSystemError(path_, error.value());
   const LockOwner self = ThisProcess();
   int attempt = 0;
-  while (!TryCreate(self)) {
+  Retries retries(path_);
+  while (!TryCreate(self, &retries)) {
     if (++attempt == kMaxAttempts) ThrowOthersAreStarting(path_);
     RemoveStale(self, log);
   }
@@ -185,12 +190,13 @@ void RunLock::ThrowIfLost() const {
           owner ? "it was taken over by " + NameOf(*owner) : "it was deleted"));
 }
 
-bool RunLock::TryCreate(LockOwner self) {
+bool RunLock::TryCreate(LockOwner self, Retries* retries) {
   fd_ = open(
       path_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
   if (fd_ < 0) {
-    if (errno == EEXIST) return false;
-    ThrowSystemError(path_, errno);
+    const int error = errno;
+    if (error == EEXIST || retries->Again(error)) return false;
+    ThrowSystemError(path_, error);
   }
   if (rules_.is_local(fd_)) {
     int result;
@@ -213,7 +219,7 @@ bool RunLock::TryCreate(LockOwner self) {
   if (is_named) unlink(path_.c_str());
   close(fd_);
   fd_ = -1;
-  if (error != 0) ThrowSystemError(path_, error);
+  if (error != 0 && !retries->Again(error)) ThrowSystemError(path_, error);
   return false;
 }
 
@@ -234,7 +240,7 @@ void RunLock::Release() {
 // later one the lock that the earlier one has made by then. So a taker waits
 // before he starts, longer than an owner needs to notice and stop.
 void RunLock::RemoveStale(const LockOwner& self, const LogSink& log) {
-  const FileDescriptor file(OpenLock(path_));
+  const FileDescriptor file(RetryCall(path_, [&] { return OpenLock(path_); }));
   if (file.get() < 0) {
     if (errno == ENOENT) return;
     ThrowCannotRead(path_, errno);

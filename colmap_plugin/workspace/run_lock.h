@@ -16,6 +16,7 @@
 namespace hpm {
 
 struct LockOwner;
+class Retries;
 
 struct LockRules {
   // The owner touches its lock this often and looks whether it still is its.
@@ -61,7 +62,8 @@ class RunLock {
   void ThrowIfLost() const;
 
  private:
-  bool TryCreate(LockOwner self);
+  // False: try again.
+  bool TryCreate(LockOwner self, Retries* retries);
   void RemoveStale(const LockOwner& self, const LogSink& log);
   bool ShowsSignOfLife(const std::string& contents, const LogSink& log) const;
   void Wait(std::chrono::milliseconds time) const;

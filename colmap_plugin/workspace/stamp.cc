@@ -2,8 +2,9 @@
 
 #include "colmap_plugin/formats/atomic_file.h"
 #include "colmap_plugin/formats/image_name.h"
+#include "src/base/error.h"
+#include "src/base/input_file.h"
 
-#include <fstream>
 #include <utility>
 
 namespace hpm {
@@ -74,16 +75,13 @@ void RemoveStamp(const std::filesystem::path& state_path,
 std::optional<Stamp> ReadStamp(const std::filesystem::path& state_path,
                                const std::string& image_name,
                                const std::string& stage) {
-  const std::filesystem::path path = StampPath(state_path, image_name, stage);
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) return std::nullopt;
-  std::ifstream file(path, std::ios::binary);
-  const auto num_bytes = std::filesystem::file_size(path, error);
-  if (error || num_bytes >= kMaxStampBytes) return std::nullopt;
-  std::string text(num_bytes, '\0');
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<size_t>(file.gcount()));
-
+  std::string text;
+  try {
+    text =
+        ReadWholeFile(StampPath(state_path, image_name, stage), kMaxStampBytes);
+  } catch (const Error&) {
+    return std::nullopt;
+  }
   nlohmann::json json =
       nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
   if (!json.is_object()) return std::nullopt;

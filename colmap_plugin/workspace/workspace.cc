@@ -5,6 +5,7 @@
 #include "colmap_plugin/workspace/image_files.h"
 #include "colmap_plugin/workspace/working_camera.h"
 #include "src/base/error.h"
+#include "src/base/retries.h"
 
 #include <algorithm>
 #include <map>
@@ -151,15 +152,14 @@ fs::path Workspace::MapPath(int index,
 }
 
 void Workspace::CheckFolder() const {
-  std::error_code ignored;
-  if (!fs::is_directory(options_.path, ignored)) {
+  if (!IsFolder(options_.path)) {
     throw Error(ErrorCode::kBadInput,
                 fmt::format("the workspace {} is no folder; give the path that "
                             "image_undistorter wrote to",
                             options_.path.string()));
   }
-  if (!fs::exists(options_.path / "sparse", ignored) &&
-      fs::exists(options_.path / "dense/sparse", ignored)) {
+  if (!Exists(options_.path / "sparse") &&
+      Exists(options_.path / "dense/sparse")) {
     throw Error(ErrorCode::kBadInput,
                 fmt::format("{} has no folder sparse, but {} has; give that as "
                             "--workspace_path",

@@ -1,11 +1,7 @@
 #include "src/image/image_integrity.h"
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
-#include <fstream>
-#include <system_error>
-#include <vector>
 
 namespace hpm {
 namespace {
@@ -13,62 +9,41 @@ namespace {
 // Reads of untrusted bytes; beyond the end they give zeros and ok() is false.
 class Bytes {
  public:
-  explicit Bytes(const std::filesystem::path& path)
-      : file_(path, std::ios::binary) {
-    std::error_code error;
-    size_ = std::filesystem::file_size(path, error);
-    if (error) size_ = 0;
-  }
+  explicit Bytes(std::string_view bytes) : bytes_(bytes) {}
 
   bool ok() const { return ok_; }
-  uint64_t size() const { return size_; }
+  uint64_t size() const { return bytes_.size(); }
 
-  uint64_t At(uint64_t offset, int num_bytes, bool big_endian) {
-    std::array<char, 8> bytes{};
-    if (offset > size_ || size_ - offset < static_cast<uint64_t>(num_bytes) ||
-        !Read(offset, bytes.data(), num_bytes)) {
+  uint64_t At(uint64_t offset, uint64_t num_bytes, bool big_endian) {
+    if (offset > size() || size() - offset < num_bytes) {
       ok_ = false;
       return 0;
     }
     uint64_t value = 0;
-    for (int i = 0; i < num_bytes; ++i) {
-      const int shift = 8 * (big_endian ? num_bytes - 1 - i : i);
-      value |= static_cast<uint64_t>(static_cast<uint8_t>(bytes[i])) << shift;
+    for (uint64_t i = 0; i < num_bytes; ++i) {
+      const uint64_t shift = 8 * (big_endian ? num_bytes - 1 - i : i);
+      value |= uint64_t{static_cast<uint8_t>(bytes_[offset + i])} << shift;
     }
     return value;
   }
 
   // The offset of the marker (0xff and a byte that is neither of the coded data
   // nor a filler) at or after `offset`; size() if there is none.
-  uint64_t FindMarker(uint64_t offset) {
-    std::vector<char> block(1 << 16);
-    bool after_ff = false;
-    while (offset < size_) {
-      const auto count =
-          static_cast<size_t>(std::min<uint64_t>(block.size(), size_ - offset));
-      if (!Read(offset, block.data(), count)) return size_;
-      for (size_t i = 0; i < count; ++i) {
-        const auto byte = static_cast<uint8_t>(block[i]);
-        const bool is_coded =
-            byte == 0 || byte == 0x01 || (byte >= 0xd0 && byte <= 0xd7);
-        if (after_ff && byte != 0xff && !is_coded) return offset + i - 1;
-        after_ff = byte == 0xff;
-      }
-      offset += count;
+  uint64_t FindMarker(uint64_t offset) const {
+    while (offset < size()) {
+      offset = bytes_.find('\xff', offset);
+      if (offset >= size() - 1) return size();
+      const auto byte = static_cast<uint8_t>(bytes_[offset + 1]);
+      const bool is_coded =
+          byte == 0 || byte == 0x01 || (byte >= 0xd0 && byte <= 0xd7);
+      if (byte != 0xff && !is_coded) return offset;
+      ++offset;
     }
-    return size_;
+    return size();
   }
 
  private:
-  bool Read(uint64_t offset, char* to, size_t num_bytes) {
-    file_.clear();
-    file_.seekg(static_cast<std::streamoff>(offset));
-    file_.read(to, static_cast<std::streamsize>(num_bytes));
-    return static_cast<bool>(file_);
-  }
-
-  std::ifstream file_;
-  uint64_t size_ = 0;
+  std::string_view bytes_;
   bool ok_ = true;
 };
 
@@ -156,8 +131,8 @@ bool IsWholeWebp(Bytes& bytes) {
 
 }  // namespace
 
-bool IsWholePicture(const std::filesystem::path& path) {
-  Bytes bytes(path);
+bool IsWholePicture(std::string_view file) {
+  Bytes bytes(file);
   const uint64_t magic = bytes.At(0, 4, true);
   if (!bytes.ok()) return true;  // the decoder's to judge
   if (magic >> 16 == 0xffd8) return IsWholeJpeg(bytes);

@@ -5,7 +5,7 @@ import resource
 import unittest
 
 from png import bomb, constant, png
-from support import FAST, CliTest, map_files, read_map
+from support import FAST, IS_SANITIZED, CliTest, map_files, read_map
 
 
 class BadImages(CliTest):
@@ -39,6 +39,7 @@ class BadImages(CliTest):
             lambda path: path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
         )
 
+    @unittest.skipIf(IS_SANITIZED, "sanitizers need address space of their own")
     def test_a_bomb_is_refused_before_it_is_decoded(self):
         workspace = self.workspace()
         path = workspace / "images/view02.png"
@@ -56,6 +57,7 @@ class BadImages(CliTest):
         path.write_bytes(good)
         self.assert_rerun_completes(workspace)
 
+    @unittest.skipIf(IS_SANITIZED, "sanitizers need address space of their own")
     def test_a_header_far_beyond_the_camera_costs_the_others_nothing(self):
         for width, height in ((20000, 20000), (20000, 15000), (32, 65500)):
             with self.subTest((width, height)):

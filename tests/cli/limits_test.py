@@ -4,7 +4,7 @@ import resource
 import subprocess
 import unittest
 
-from support import FAST, HPM_MVS, CliTest, map_files
+from support import FAST, HPM_MVS, IS_SANITIZED, CliTest, map_files
 
 FAST_ALONE = [option for option in FAST if "num_threads" not in option]
 # A user id that has no other process, since the limit counts all of a user's.
@@ -46,6 +46,7 @@ class Threads(CliTest):
                 self.assertIn(f"{processes - 1} compute in place of 16", result.stderr)
                 self.assert_same_maps(map_files(workspace), map_files(expected))
 
+    @unittest.skipIf(IS_SANITIZED, "sanitizers need address space of their own")
     def test_without_address_space_for_all_threads_nothing_is_aborted(self):
         def starts(megabytes):
             return subprocess.run(

@@ -1,6 +1,4 @@
-"""Same seed and options, same bytes: for every number of threads, and for a run that
-was killed and resumed."""
-import time
+"""Same seed and options, same bytes: for every number of threads."""
 import unittest
 
 from support import FAST, CliTest, map_files
@@ -20,27 +18,6 @@ class Reproducibility(CliTest):
         # Two images in flight.
         self.assert_same_maps(self.maps_of("--PatchMatchStereo.num_threads=4"), one)
         self.assertTrue(one != self.maps_of("--random_seed=7"))
-
-    def test_kill_and_resume_give_the_bytes_of_a_straight_run(self):
-        options = ["--Hpm.num_iterations=3", "--PatchMatchStereo.num_threads=2"]
-        straight = self.workspace()
-        begin = time.monotonic()
-        self.assert_exit(self.run_tool(straight, *options), 0)
-        seconds = time.monotonic() - begin
-
-        workspace = self.workspace()
-        for i in range(5):
-            process = self.start_tool(workspace, *options)
-            time.sleep(seconds * (0.05 + 0.07 * i))
-            process.kill()
-            process.wait()
-            # Whatever lies under a final name is one of the finished maps.
-            whole = map_files(straight)
-            for name, data in map_files(workspace).items():
-                self.assertTrue(data == whole[name], name)
-        self.assert_exit(self.run_tool(workspace, *options), 0)
-        self.assert_no_partial_files(workspace)
-        self.assert_same_maps(map_files(workspace), map_files(straight))
 
     def test_a_finished_workspace_is_left_alone_and_overwrite_computes_anew(self):
         workspace = self.workspace()

@@ -13,6 +13,9 @@ import unittest
 
 HPM_MVS = os.environ["HPM_MVS"]
 HPM_MAKE_SCENE = os.environ["HPM_MAKE_SCENE"]
+# Under sanitizers everything takes longer, and address space is not ours to limit.
+TIME_FACTOR = float(os.environ.get("HPM_TIME_FACTOR", 1))
+IS_SANITIZED = os.environ.get("HPM_SANITIZE", "") != ""
 
 # Options for tests in which only the files and the exit code count.
 FAST = [
@@ -84,7 +87,7 @@ class CliTest(unittest.TestCase):
         return [HPM_MVS, "patch_match_stereo", "--workspace_path", str(workspace), *options]
 
     def run_tool(self, workspace, *options, **keywords):
-        keywords.setdefault("timeout", 120)
+        keywords["timeout"] = keywords.get("timeout", 120) * TIME_FACTOR
         return subprocess.run(
             self.command(workspace, *options),
             stdout=subprocess.PIPE,
@@ -102,7 +105,7 @@ class CliTest(unittest.TestCase):
         log.close()
         self.addCleanup(process.wait)
         self.addCleanup(process.kill)
-        deadline = time.monotonic() + 60
+        deadline = time.monotonic() + 60 * TIME_FACTOR
         while b"Processing view" not in (workspace / "log.txt").read_bytes():
             self.assertIsNone(process.poll(), (workspace / "log.txt").read_text())
             self.assertLess(time.monotonic(), deadline)

@@ -80,6 +80,14 @@ struct Array {
   }
 };
 
+// Streams and events are counted as memory is.
+template <class Handle>
+cudaError_t MakeHandle(Handle* handle) {
+  const cudaError_t status = Called(CardCall::kAny);
+  if (status == cudaSuccess) *handle = static_cast<Handle>(NewMemory(1));
+  return status;
+}
+
 void CheckLaunch() {
   CheckCuda(Called(CardCall::kLaunch), "starting a kernel");
 }
@@ -294,18 +302,22 @@ cudaError_t cudaMemcpyAsync(void* to,
 }
 
 cudaError_t cudaStreamCreateWithFlags(cudaStream_t* stream, unsigned) {
-  *stream = nullptr;
-  return Called(CardCall::kAny);
+  return hpm::MakeHandle(stream);
 }
-cudaError_t cudaStreamDestroy(cudaStream_t) { return cudaSuccess; }
+cudaError_t cudaStreamDestroy(cudaStream_t stream) {
+  hpm::FreeMemory(stream);
+  return cudaSuccess;
+}
 cudaError_t cudaStreamSynchronize(cudaStream_t) {
   return Called(CardCall::kAny);
 }
 cudaError_t cudaEventCreateWithFlags(cudaEvent_t* event, unsigned) {
-  *event = nullptr;
-  return Called(CardCall::kAny);
+  return hpm::MakeHandle(event);
 }
-cudaError_t cudaEventDestroy(cudaEvent_t) { return cudaSuccess; }
+cudaError_t cudaEventDestroy(cudaEvent_t event) {
+  hpm::FreeMemory(event);
+  return cudaSuccess;
+}
 cudaError_t cudaEventRecord(cudaEvent_t, cudaStream_t) {
   return Called(CardCall::kAny);
 }

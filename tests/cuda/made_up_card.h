@@ -29,7 +29,7 @@ void LetCallFail(CardCall kind, int number, cudaError_t error, bool for_good);
 // Kernels report success and do nothing.
 void LetKernelsIdle(bool idle);
 
-// Allocations that were not given back, of the card and of locked memory.
+// What was not given back: memory of the card, locked memory, streams, events.
 int LiveAllocations();
 
 }  // namespace hpm

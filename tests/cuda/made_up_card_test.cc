@@ -218,6 +218,25 @@ TEST_F(MadeUpCardTest, ALaunchThatFailsIsAnError) {
   }
 }
 
+// Whatever fails while a backend is made, nothing of it stays (TearDown).
+TEST_F(MadeUpCardTest, ABackendThatCannotBeMadeLeavesNothing) {
+  StartCounting();
+  Make();
+  const int num_calls = CallsOf(CardCall::kAny);
+  ASSERT_GT(num_calls, 8);
+  int num_failed = 0;
+  for (int i = 0; i < num_calls; ++i) {
+    LetCallFail(CardCall::kAny, i, cudaErrorDevicesUnavailable, false);
+    try {
+      Make();
+    } catch (const GpuError&) {
+      ++num_failed;
+    }
+    EXPECT_EQ(LiveAllocations(), 0) << i;
+  }
+  EXPECT_GT(num_failed, 6);
+}
+
 // From one call on nothing answers any more; the object still goes quietly.
 TEST_F(MadeUpCardTest, ACardThatIsLostIsAnErrorWheneverItGoes) {
   StartCounting();

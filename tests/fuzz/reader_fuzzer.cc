@@ -6,14 +6,20 @@
 #include "colmap_plugin/formats/patch_match_cfg.h"
 #include "colmap_plugin/formats/pmvs.h"
 #include "colmap_plugin/formats/sparse_model.h"
+#include "colmap_plugin/tool/parse_options.h"
 #include "colmap_plugin/workspace/image_size.h"
+#include "colmap_plugin/workspace/lock_owner.h"
+#include "colmap_plugin/workspace/stamp.h"
 #include "src/base/error.h"
+#include "src/base/input_file.h"
 
 #include <cstdint>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -47,6 +53,29 @@ const std::map<std::string, Reader>& Readers() {
       {"model_text",
        {{"cameras.txt", "images.txt", "points3D.txt", "rigs.txt", "frames.txt"},
         [](const auto& f) { ReadSparseModel(f); }}},
+      // What is read back is written as it was.
+      {"stamp",
+       {{"stamps/s/a.json"},
+        [](const auto& f) {
+          const std::optional<Stamp> stamp = ReadStamp(f, "a", "s");
+          if (!stamp) return;
+          WriteStamp(f, "b", "s", *stamp);
+          if (!ReadStamp(f, "b", "s")) std::abort();
+        }}},
+      {"lock",
+       {{"lock"},
+        [](const auto& f) {
+          const std::optional<LockOwner> owner =
+              ParseLockOwner(ReadWholeFile(f / "lock", 4096));
+          if (!owner) return;
+          IsVisible(*owner, ThisProcess());
+          if (!ParseLockOwner(FormatLockOwner(*owner))) std::abort();
+        }}},
+      {"project_file",
+       {{"project.ini"},
+        [](const auto& f) {
+          ParseOptions({"--project_path", (f / "project.ini").string()});
+        }}},
       {"pmvs",
        {{"bundle.rd.out",
          "vis.dat",

@@ -6,12 +6,16 @@
 #include <cmath>
 #include <fstream>
 #include <functional>
+#include <new>
 #include <random>
 #include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 namespace hpm {
 namespace {
@@ -44,6 +48,35 @@ cv::Mat RandomColours(int width, int height) {
     image.data[i] = static_cast<uint8_t>(random());
   }
   return image;
+}
+
+// Of the machine, not of the file: the run ends instead of going on without it.
+TEST_F(LoadImage, LackOfMemoryIsNoDamage) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "sanitizers need address space of their own";
+#endif
+  const auto path = Write("a.png", cv::Mat(4000, 5000, CV_8UC3, cv::Scalar()));
+  const pid_t child = fork();
+  if (child == 0) {
+    rlim_t used = 0;  // pages
+    std::ifstream("/proc/self/statm") >> used;
+    const rlim_t limit =
+        used * static_cast<rlim_t>(sysconf(_SC_PAGESIZE)) + (24 << 20);
+    const rlimit limits = {limit, limit};
+    setrlimit(RLIMIT_AS, &limits);
+    try {
+      LoadGrayImage(path, 80, 60);
+      _exit(1);
+    } catch (const std::bad_alloc&) {
+      _exit(42);
+    } catch (...) {
+      _exit(2);
+    }
+  }
+  ASSERT_GT(child, 0);
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_EQ(WEXITSTATUS(status), 42);
 }
 
 TEST_F(LoadImage, GreyIsTheRoundedBt709Luma) {

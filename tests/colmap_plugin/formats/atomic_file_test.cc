@@ -2,10 +2,13 @@
 // a symbol of the program wins over the one of the C library.
 #include "colmap_plugin/formats/atomic_file.h"
 
+#include "colmap_plugin/formats/map_file.h"
+#include "src/base/retries.h"
 #include "tests/colmap_plugin/formats/test_files.h"
 
 #include <algorithm>
 #include <cerrno>
+#include <climits>
 #include <optional>
 #include <vector>
 
@@ -24,6 +27,7 @@ struct Faults {
   int close_error = 0;
   int rename_error = 0;
   int num_interrupts = 0;       // writes and syncs that fail with EINTR first
+  int num_failures = INT_MAX;   // after so many every call succeeds
   size_t max_write = SIZE_MAX;  // short writes
 };
 Faults faults;
@@ -32,8 +36,10 @@ Faults faults;
 bool Intercept(const char* call, int error) {
   if (!faults.recording) return false;
   faults.calls.push_back(call);
+  if (error == 0 || faults.num_failures == 0) return false;
+  --faults.num_failures;
   errno = error;
-  return error != 0;
+  return true;
 }
 
 bool Interrupt() {
@@ -117,13 +123,103 @@ TEST(AtomicFile, SurvivesInterruptsAndShortWrites) {
   EXPECT_EQ(ReadFile(folder / "f"), "0123456789");
 }
 
+constexpr int Faults::*kSteps[] = {&Faults::write_error,
+                                   &Faults::fsync_error,
+                                   &Faults::close_error,
+                                   &Faults::rename_error};
+
+RetryRules Quick() { return {3, std::chrono::milliseconds(1), 1}; }
+
+TEST(AtomicFile, ErrorsThatPassAreRetriedAndTold) {
+  const ScratchFolder folder;
+  for (int Faults::*step : kSteps) {
+    for (const int error : {EIO, ESTALE, EAGAIN}) {
+      std::vector<std::string> log;
+      const RetryScope scope(
+          [&log](LogLevel, const std::string& line) { log.push_back(line); },
+          nullptr,
+          Quick());
+      std::filesystem::remove(folder / "f");
+      EXPECT_FALSE(WriteWithFaults(folder / "f", [step, error] {
+        faults.*step = error;
+        faults.num_failures = 3;
+      }));
+      EXPECT_EQ(ReadFile(folder / "f"), "0123456789");
+      EXPECT_EQ(folder.CountFiles(), 1u);
+      ASSERT_FALSE(log.empty());
+      EXPECT_THAT(log[0], testing::HasSubstr((folder / "f").string()));
+      EXPECT_THAT(log[0], testing::HasSubstr("trying again"));
+    }
+  }
+}
+
+// fsync(2): after EIO the kernel may have dropped what was written, and a
+// second fsync says nothing of it.
+TEST(AtomicFile, AfterAnErrorOfTheDiskAllIsWrittenAnew) {
+  const ScratchFolder folder;
+  const RetryScope scope(nullptr, nullptr, Quick());
+  EXPECT_FALSE(WriteWithFaults(folder / "f", [] {
+    faults.fsync_error = EIO;
+    faults.num_failures = 1;
+  }));
+  EXPECT_THAT(faults.calls,
+              testing::ElementsAre("write",
+                                   "fsync",
+                                   "close",
+                                   "write",
+                                   "fsync",
+                                   "close",
+                                   "rename",
+                                   "fsync",
+                                   "close"));
+}
+
+TEST(AtomicFile, MapsAreWrittenAnewAsAWhole) {
+  const ScratchFolder folder;
+  const RetryScope scope(nullptr, nullptr, Quick());
+  const Map map = {2, 1, 1, {1, 2}};
+  faults = Faults();
+  faults.fsync_error = EIO;
+  faults.num_failures = 2;
+  faults.recording = true;
+  WriteMap(folder / "m", map);
+  faults.recording = false;
+  EXPECT_EQ(ReadMap(folder / "m").data, map.data);
+}
+
+TEST(AtomicFile, ErrorsThatStayEndTheTries) {
+  const ScratchFolder folder;
+  WriteFileAtomically(folder / "f", "old");
+  const RetryScope scope(nullptr, nullptr, Quick());
+  for (int Faults::*step : kSteps) {
+    const auto error =
+        WriteWithFaults(folder / "f", [step] { faults.*step = EIO; });
+    ASSERT_TRUE(error);
+    EXPECT_EQ(error->code(), ErrorCode::kFailure);
+    EXPECT_THAT(error->what(), testing::HasSubstr((folder / "f").string()));
+    EXPECT_EQ(faults.num_failures, INT_MAX - 4);
+    EXPECT_EQ(ReadFile(folder / "f"), "old");
+    EXPECT_EQ(folder.CountFiles(), 1u);
+  }
+}
+
+TEST(AtomicFile, AnInterruptEndsTheTries) {
+  const ScratchFolder folder;
+  CancelToken cancel;
+  cancel.Cancel();
+  const RetryScope scope(
+      nullptr, &cancel, {3, std::chrono::milliseconds(100000), 1});
+  const auto error =
+      WriteWithFaults(folder / "f", [] { faults.write_error = EIO; });
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->code(), ErrorCode::kInterrupted);
+  EXPECT_EQ(folder.CountFiles(), 0u);
+}
+
 TEST(AtomicFile, AnyFailedStepLeavesTheOldFileAndNoTemporary) {
   const ScratchFolder folder;
   WriteFileAtomically(folder / "f", "old");
-  for (int Faults::*step : {&Faults::write_error,
-                            &Faults::fsync_error,
-                            &Faults::close_error,
-                            &Faults::rename_error}) {
+  for (int Faults::*step : kSteps) {
     const auto error =
         WriteWithFaults(folder / "f", [step] { faults.*step = ENOSPC; });
     ASSERT_TRUE(error);
@@ -137,6 +233,7 @@ TEST(AtomicFile, AnyFailedStepLeavesTheOldFileAndNoTemporary) {
 
 TEST(AtomicFile, ErrorsAreSortedByWhoCanMendThem) {
   const ScratchFolder folder;
+  const RetryScope scope(nullptr, nullptr, Quick());
   const auto code_of = [&](int error) {
     return WriteWithFaults(folder / "f",
                            [error] { faults.write_error = error; })

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <exception>
 #include <thread>
 
 #include <tbb/blocked_range.h>
@@ -16,6 +17,25 @@
 namespace tbb {
 
 struct simple_partitioner {};
+
+// Runs work() in two threads and passes on what one of them throws.
+template <class Work>
+void RunTwice(const Work& work) {
+  std::exception_ptr failures[2];
+  const auto guarded = [&](int i) {
+    try {
+      work();
+    } catch (...) {
+      failures[i] = std::current_exception();
+    }
+  };
+  std::thread other(guarded, 1);
+  guarded(0);
+  other.join();
+  for (const std::exception_ptr& failure : failures) {
+    if (failure) std::rethrow_exception(failure);
+  }
+}
 
 // Chunks of the range's grain size, taken in turn by two threads. Relaxed, so
 // that taking a chunk orders nothing between the threads.
@@ -25,16 +45,25 @@ void parallel_for(const blocked_range<Index>& range,
                   const simple_partitioner& = {}) {
   std::atomic<Index> next{range.begin()};
   const Index step = static_cast<Index>(range.grainsize());
-  const auto work = [&] {
+  RunTwice([&] {
     for (;;) {
       const Index begin = next.fetch_add(step, std::memory_order_relaxed);
       if (begin >= range.end()) return;
       body(blocked_range<Index>(begin, std::min(begin + step, range.end())));
     }
-  };
-  std::thread other(work);
-  work();
-  other.join();
+  });
+}
+
+template <class Index, class Body>
+void parallel_for(Index first,
+                  Index last,
+                  const Body& body,
+                  const simple_partitioner& = {}) {
+  if (first >= last) return;
+  parallel_for(blocked_range<Index>(first, last),
+               [&](const blocked_range<Index>& range) {
+                 for (Index i = range.begin(); i < range.end(); ++i) body(i);
+               });
 }
 
 }  // namespace tbb

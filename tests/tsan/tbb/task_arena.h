@@ -18,6 +18,10 @@ class task_arena {
 
 namespace this_task_arena {
 inline int max_concurrency() { return 2; }
+template <class Function>
+void isolate(const Function& function) {
+  function();
+}
 }  // namespace this_task_arena
 
 }  // namespace tbb

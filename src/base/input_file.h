@@ -1,6 +1,7 @@
 // Opening and reading of untrusted files: only regular files (a FIFO would
 // block for ever, a device has no length), length known before anything is
-// allocated. Throws Error(kBadInput) naming the file.
+// allocated. Errors that pass are retried (retries.h). Throws Error(kBadInput)
+// naming the file.
 #pragma once
 
 #include <cstddef>
@@ -25,7 +26,7 @@ class InputFile {
   uint64_t size() const { return size_; }
 
   // Returns how many bytes were read: less than asked for only at the end of
-  // the file.
+  // the file. Several threads may read at once.
   size_t ReadAt(uint64_t offset, void* data, size_t num_bytes) const;
 
  private:
@@ -34,24 +35,8 @@ class InputFile {
   int fd_ = -1;
 };
 
-// What the binary and the text reader share: an error that names file and
-// place.
-class InputCursor {
- public:
-  virtual ~InputCursor() = default;
-
-  // Byte offset of the current record or number of the current line.
-  virtual uint64_t place() const = 0;
-
-  [[noreturn]] void FailAt(uint64_t place, const std::string& what) const;
-  [[noreturn]] void Fail(const std::string& what) const {
-    FailAt(place(), what);
-  }
-
- private:
-  // The one-line message: file, what is wrong, place, remedy.
-  virtual std::string Message(uint64_t place,
-                              const std::string& what) const = 0;
-};
+// All of it, if it has at most `max_bytes`; else it throws.
+std::string ReadWholeFile(const std::filesystem::path& path,
+                          uint64_t max_bytes);
 
 }  // namespace hpm

@@ -1,0 +1,105 @@
+#include "src/base/input_file.h"
+
+#include "src/base/error.h"
+#include "src/base/retries.h"
+
+#include <cerrno>
+#include <system_error>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace hpm {
+namespace {
+
+[[noreturn]] void ThrowCannotRead(const std::filesystem::path& path,
+                                  int error) {
+  throw Error(ErrorCode::kBadInput,
+              fmt::format("cannot read {}: {}; {}",
+                          path.string(),
+                          std::generic_category().message(error),
+                          IsTransient(error)
+                              ? "check the disk or its server and run again"
+                              : "check that the file exists and is readable"));
+}
+
+// O_NONBLOCK: opening a FIFO without a writer must return, so that it can be
+// refused.
+int OpenToRead(const std::filesystem::path& path, struct stat* status) {
+  const int fd = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (fd < 0 || fstat(fd, status) == 0) return fd;
+  const int error = errno;
+  close(fd);
+  errno = error;
+  return -1;
+}
+
+}  // namespace
+
+InputFile::InputFile(const std::filesystem::path& path) : path_(path) {
+  struct stat status = {};
+  fd_ = RetryCall(path, [&] { return OpenToRead(path, &status); });
+  if (fd_ < 0) ThrowCannotRead(path, errno);
+  if (!S_ISREG(status.st_mode)) {
+    close(fd_);
+    throw Error(ErrorCode::kBadInput,
+                fmt::format("{} is not a regular file; give the path of a file",
+                            path.string()));
+  }
+  size_ = static_cast<uint64_t>(status.st_size);
+}
+
+InputFile::~InputFile() { close(fd_); }
+
+size_t InputFile::ReadAt(uint64_t offset, void* data, size_t num_bytes) const {
+  Retries retries(path_);
+  size_t num_read = 0;
+  // A stale handle stays so: later tries open the file again.
+  bool reopen = false;
+  while (num_read < num_bytes) {
+    struct stat status = {};
+    const int fd = reopen ? OpenToRead(path_, &status) : fd_;
+    ssize_t n = -1;
+    int error = errno;
+    if (reopen && fd >= 0 &&
+        (!S_ISREG(status.st_mode) ||
+         static_cast<uint64_t>(status.st_size) != size_)) {
+      error = ENOENT;  // what was being read is gone
+    } else if (fd >= 0) {
+      n = pread(fd,
+                static_cast<char*>(data) + num_read,
+                num_bytes - num_read,
+                static_cast<off_t>(offset + num_read));
+      error = errno;
+    }
+    if (reopen && fd >= 0) close(fd);
+    if (n == 0) break;
+    if (n > 0) {
+      num_read += static_cast<size_t>(n);
+      continue;
+    }
+    if (!retries.Again(error)) ThrowCannotRead(path_, error);
+    reopen = reopen || error != EINTR;
+  }
+  return num_read;
+}
+
+std::string ReadWholeFile(const std::filesystem::path& path,
+                          uint64_t max_bytes) {
+  const InputFile file(path);
+  if (file.size() > max_bytes) {
+    throw Error(ErrorCode::kBadInput,
+                fmt::format("{} has {} bytes, at most {} are read; check what "
+                            "lies there",
+                            path.string(),
+                            file.size(),
+                            max_bytes));
+  }
+  std::string text(file.size(), '\0');
+  text.resize(file.ReadAt(0, text.data(), text.size()));
+  return text;
+}
+
+}  // namespace hpm
