@@ -1,6 +1,7 @@
 #include "colmap_plugin/tool/run_process.h"
 
 #include "colmap_plugin/controller/controller.h"
+#include "colmap_plugin/inspect/check_maps.h"
 #include "colmap_plugin/tool/dispatch.h"
 #include "colmap_plugin/tool/signals.h"
 #include "src/base/error.h"
@@ -42,6 +43,18 @@ RunSummary RunStereo(const ControllerOptions& options,
   return PatchMatchController(options, log, progress, cancel).Run();
 }
 
+int RunCheck(const CommandCall& call) {
+  const MapCheck check =
+      CheckMaps(call.options, call.own.fix, call.log, *call.cancel);
+  const int printed = call.print(CheckText(check));
+  if (printed != 0) return printed;
+  for (const Finding& finding : check.findings) {
+    if (finding.kind == FindingKind::kDamaged && !finding.removed)
+      return static_cast<int>(ErrorCode::kBadInput);
+  }
+  return check.findings.empty() ? 0 : static_cast<int>(ErrorCode::kPartial);
+}
+
 }  // namespace
 
 int RunProcess(const std::vector<std::string>& arguments) {
@@ -55,7 +68,8 @@ int RunProcess(const std::vector<std::string>& arguments) {
                        Columns(),
                        Seconds,
                        &cancel,
-                       RunStereo};
+                       RunStereo,
+                       {{"check", RunCheck}}};
   const int exit_code = RunTool(arguments, tool);
   const bool interrupted =
       exit_code == static_cast<int>(ErrorCode::kInterrupted);
