@@ -1,18 +1,13 @@
 #include "colmap_plugin/inspect/check_maps.h"
 
-#include "colmap_plugin/controller/deep_images.h"
-#include "colmap_plugin/controller/image_contents.h"
-#include "colmap_plugin/controller/run_setup.h"
-#include "colmap_plugin/controller/stages.h"
 #include "colmap_plugin/formats/content_hash.h"
 #include "colmap_plugin/formats/image_name.h"
 #include "colmap_plugin/inspect/map_faults.h"
-#include "colmap_plugin/options/method_options.h"
+#include "colmap_plugin/inspect/planned_run.h"
 #include "colmap_plugin/workspace/image_files.h"
 #include "colmap_plugin/workspace/run_lock.h"
 #include "colmap_plugin/workspace/stamp.h"
 #include "src/base/error.h"
-#include "src/engine/schedule.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -44,14 +39,6 @@ const char* NameOfKind(FindingKind kind) {
       break;
   }
   return "missing";
-}
-
-ControllerOptions ForPlanOnly(ControllerOptions options,
-                              const Workspace& workspace) {
-  SetLevels(workspace, &options);
-  // So the plan looks at no map and changes no stamp.
-  options.hpm.overwrite = true;
-  return options;
 }
 
 class Checker {
@@ -346,26 +333,21 @@ int MapCheck::Count(FindingKind kind) const {
       }));
 }
 
-MapCheck CheckMaps(const ControllerOptions& given,
+MapCheck CheckMaps(const ControllerOptions& options,
                    bool fix,
                    const LogSink& log,
                    const CancelToken& cancel) {
-  ControllerOptions options = given;
-  Workspace workspace(options.workspace, log);
-  options = ForPlanOnly(options, workspace);
   CancelToken stop(&cancel);
+  PlannedRun run(options, log, stop);
   std::optional<RunLock> lock;
-  if (fix) lock.emplace(workspace.StatePath(), log, &stop);
-  ImageContents contents(workspace);
-  workspace.StretchDeepImages(FindDeepRange(workspace, &contents, log, stop));
-  const ProblemOptions problem_options = options.problems;
-  std::vector<StereoProblem> problems =
-      ReadProblems(workspace, problem_options, log);
-  if (options.patch_match.geom_consistency)
-    AddSourceProblems(workspace, problem_options, &problems);
-  const Schedule schedule = MakeSchedule(MakeScheduleOptions(options));
-  const StagePlan plan(workspace, problems, schedule, options, &contents, stop);
-  return Checker(workspace, problems, plan, fix, lock ? &*lock : nullptr, stop)
+  if (fix) lock.emplace(run.workspace().StatePath(), log, &stop);
+  run.Plan(/*look_at_maps=*/false, log);
+  return Checker(run.workspace(),
+                 run.problems(),
+                 run.plan(),
+                 fix,
+                 lock ? &*lock : nullptr,
+                 stop)
       .Run();
 }
 

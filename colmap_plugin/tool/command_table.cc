@@ -18,13 +18,36 @@ CommandOption Row(std::string name,
           std::move(help)};
 }
 
+template <class T>
+CommandOption ExportRow(std::string name,
+                        T ExportOptions::*member,
+                        Allowed allowed,
+                        std::string help) {
+  return {std::move(name),
+          [member](CommandOptions* options) {
+            return OptionMember(&(options->export_maps.*member));
+          },
+          std::move(allowed),
+          std::move(help)};
+}
+
 std::vector<Command> MakeTable() {
   using C = CommandOptions;
+  using E = ExportOptions;
   return {
       // A table reads better packed.
       // clang-format off
       {"patch_match_stereo", "Compute the depth and normal maps of a workspace",
        "", "", TakesOptions::kAll, {}},
+      {"plan", "Say what a run would do, how long it takes and what would stop it, without running",
+       "Makes all checks that a run makes, and names all problems at once, not only the first: options, workspace, "
+       "model, images, masks, patch-match.cfg, folders, disk, memory, device. Then: images and sources, working size, "
+       "disk and memory, what is kept from an earlier run, and a time that is extrapolated from one image computed "
+       "at a reduced size, in the folder for temporary files. Give the options of the run.",
+       "that of the run: 0 nothing stops it, 4 some images cannot be computed",
+       TakesOptions::kAll,
+       {Row("sample_seconds", &C::sample_seconds, Between(0, 3600),
+            "How long to measure for the time; 0: say no time")}},
       {"check", "Validate all maps of a workspace and name those that are damaged, stale, foreign or missing",
        "Reads every depth map, normal map, consistency graph and stamp: header and length, checksum, finite "
        "values, depths that are not negative and inside a range given by hand, normals of length one, and the "
@@ -36,6 +59,22 @@ std::vector<Command> MakeTable() {
        TakesOptions::kAll,
        {Row("fix", &C::fix, Anything(),
             "Remove what is damaged, so that the next run makes only that; stale and foreign files stay")}},
+      {"export", "Write finished maps as EXR, PFM, 16-bit PNG, NPY or as a coloured cloud (PLY) per image",
+       "Writes IMAGE.depth.EXT and IMAGE.normal.EXT, and IMAGE.json, which holds the camera and what the numbers "
+       "mean: depth is z in the camera's frame in model units, 0 where there is none; normals are unit vectors in "
+       "the camera's frame. ply: IMAGE.ply, the points of this one image in the model's frame, with colours and "
+       "normals, for a quick look without fusion. exr: one channel Y or three, R G B = x y z, 32-bit float. "
+       "png16: depth in steps of depth_per_step, 0 = none; normals as 32768 + 32767 n.",
+       "0 done, 3 there are no such maps, 4 some maps are damaged, the others are written",
+       TakesOptions::kWorkspace,
+       {ExportRow("format", &E::format, OneOf({"exr", "pfm", "png16", "npy", "ply"}), "Kind of files"),
+        ExportRow("image_name", &E::image_name, Anything(),
+                  "Only this image, named as in the sparse model; not given: all that have maps"),
+        ExportRow("input_type", &E::input_type, OneOf({"geometric", "photometric"}),
+                  "Which maps, as in stereo_fusion"),
+        ExportRow("output_path", &E::output_path, Anything(), "Folder for the files; not given: stereo/export"),
+        ExportRow("depth_step", &E::depth_step, AtLeast(0),
+                  "png16: model units per step; 0: each image's largest depth becomes 65535")}},
       {"help", "Print this text; help COMMAND: what a command does and takes; help --markdown, --man, --bash: as a "
        "document, manual page, completion", "", "", TakesOptions::kNone, {}},
       {"version", "Print the version", "", "", TakesOptions::kNone, {}},

@@ -2,6 +2,7 @@
 // completion and docs/options.md come from it.
 #pragma once
 
+#include "colmap_plugin/inspect/export_maps.h"
 #include "colmap_plugin/options/option_table.h"
 
 #include <filesystem>
@@ -16,6 +17,8 @@ namespace hpm {
 // these.
 struct CommandOptions {
   bool fix = false;
+  double sample_seconds = 30;
+  ExportOptions export_maps;
 };
 
 struct CommandOption {

@@ -2,6 +2,8 @@
 
 #include "colmap_plugin/controller/controller.h"
 #include "colmap_plugin/inspect/check_maps.h"
+#include "colmap_plugin/inspect/export_maps.h"
+#include "colmap_plugin/inspect/plan_run.h"
 #include "colmap_plugin/tool/dispatch.h"
 #include "colmap_plugin/tool/signals.h"
 #include "src/base/error.h"
@@ -14,6 +16,7 @@
 #include <string_view>
 #include <vector>
 
+#include <fmt/format.h>
 #include <opencv2/core/utils/logger.hpp>
 
 namespace hpm {
@@ -43,6 +46,19 @@ RunSummary RunStereo(const ControllerOptions& options,
   return PatchMatchController(options, log, progress, cancel).Run();
 }
 
+int RunPlanCommand(const CommandCall& call) {
+  const RunPlan plan =
+      PlanRun(call.options, call.own.sample_seconds, call.log, *call.cancel);
+  std::string text;
+  for (const std::string& line : plan.lines) text += line + "\n";
+  const int printed = call.print(text);
+  for (const std::string& problem : plan.problems)
+    call.log(LogLevel::kError, problem);
+  if (plan.problems.empty())
+    call.log(LogLevel::kInfo, "Nothing stops this run");
+  return plan.exit_code != 0 ? plan.exit_code : printed;
+}
+
 int RunCheck(const CommandCall& call) {
   const MapCheck check =
       CheckMaps(call.options, call.own.fix, call.log, *call.cancel);
@@ -55,6 +71,22 @@ int RunCheck(const CommandCall& call) {
   return check.findings.empty() ? 0 : static_cast<int>(ErrorCode::kPartial);
 }
 
+int RunExport(const CommandCall& call) {
+  const ExportResult result = ExportMaps(
+      call.options.workspace, call.own.export_maps, call.log, *call.cancel);
+  if (!result.failed.empty()) {
+    call.log(LogLevel::kError,
+             fmt::format("{} images could not be exported, the first: {}",
+                         result.failed.size(),
+                         result.failed.front()));
+  }
+  call.log(LogLevel::kInfo,
+           fmt::format("{} images exported to {}",
+                       result.num_images,
+                       result.folder.string()));
+  return result.failed.empty() ? 0 : static_cast<int>(ErrorCode::kPartial);
+}
+
 }  // namespace
 
 int RunProcess(const std::vector<std::string>& arguments) {
@@ -62,14 +94,15 @@ int RunProcess(const std::vector<std::string>& arguments) {
   // What OpenCV would print about a file is said by our own messages.
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
   const CancelToken& cancel = InstallSignalHandlers();
-  ToolEnvironment tool{&std::cout,
-                       &std::cerr,
-                       IsTerminal(),
-                       Columns(),
-                       Seconds,
-                       &cancel,
-                       RunStereo,
-                       {{"check", RunCheck}}};
+  ToolEnvironment tool{
+      &std::cout,
+      &std::cerr,
+      IsTerminal(),
+      Columns(),
+      Seconds,
+      &cancel,
+      RunStereo,
+      {{"plan", RunPlanCommand}, {"check", RunCheck}, {"export", RunExport}}};
   const int exit_code = RunTool(arguments, tool);
   const bool interrupted =
       exit_code == static_cast<int>(ErrorCode::kInterrupted);
