@@ -112,7 +112,14 @@ PatchMatchController::PatchMatchController(const ControllerOptions& options,
                                            ProgressSink progress,
                                            const CancelToken& cancel)
     : options_(options),
-      log_(std::move(log)),
+      log_([this, log = std::move(log)](LogLevel level,
+                                        const std::string& message) {
+        if (level == LogLevel::kWarning) {
+          const std::lock_guard<std::mutex> lock(mutex_);
+          warnings_.push_back(message);
+        }
+        log(level, message);
+      }),
       progress_(std::move(progress)),
       cancel_(cancel) {}
 
@@ -233,6 +240,7 @@ RunSummary PatchMatchController::Run() {
       resources.backend_name,
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start)
           .count());
+  summary.warnings = warnings_;
   summary.num_fusable = CountFinalMaps(workspace, plan);
   if (statistics.AnyComputed() || statistics.AnyFailed()) {
     WriteRunRecord(workspace.StatePath(), statistics.Record(options_, summary));

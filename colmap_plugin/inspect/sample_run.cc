@@ -8,10 +8,11 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <random>
 #include <system_error>
 #include <vector>
 
-#include <stdlib.h>
+#include <fmt/format.h>
 
 namespace hpm {
 namespace fs = std::filesystem;
@@ -27,10 +28,12 @@ class ScratchWorkspace {
   // With the images and the model of another workspace, by links.
   explicit ScratchWorkspace(const fs::path& workspace) {
     std::error_code error;
-    std::string name =
-        (fs::temp_directory_path(error) / "hpm_mvs_plan_XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) return;
-    path_ = name;
+    const fs::path folder = fs::temp_directory_path(error);
+    std::random_device random;
+    const fs::path path = folder / fmt::format("hpm_mvs_plan_{:08x}", random());
+    if (!fs::create_directory(path, error) || error) return;
+    path_ = path;
+    fs::permissions(path_, fs::perms::owner_all, error);
     for (const char* folder : {"images", "sparse"}) {
       fs::create_directory_symlink(
           fs::absolute(workspace / folder, error), path_ / folder, error);

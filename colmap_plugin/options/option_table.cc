@@ -132,6 +132,8 @@ std::vector<OptionSpec> MakeTable() {
           "num_fine_geom_passes where they are not given (docs/benchmarks.md)"),
       Hpm(kCommon, kNothing, "overwrite", &H::overwrite, Anything(),
           "Compute maps again that are complete and made with the same options"),
+      Hpm(kCommon, kNothing, "report", &H::report, Anything(),
+          "Write stereo/report.html at the end: pictures, losses and times of all images, warnings with remedies"),
       Hpm(kCommon, kNothing, "previews", &H::previews, Anything(),
           "Write colour pictures of the maps to stereo/previews"),
       HpmWorkspace(kCommon, kInputs, "mask_path", &W::mask_path, Anything(),

@@ -59,6 +59,15 @@ std::vector<Command> MakeTable() {
        TakesOptions::kAll,
        {Row("fix", &C::fix, Anything(),
             "Remove what is damaged, so that the next run makes only that; stale and foreign files stay")}},
+      {"report", "Write a page about a workspace's maps: pictures, why pixels were dropped, times, warnings",
+       "One HTML file that needs nothing else, made of the maps, their stamps and the record of the last run: image, "
+       "depth and normals side by side, the share of pixels with a depth and what took the others, sources and the "
+       "points they share, the depth range beside that of the sparse points, time and memory, options, warnings with "
+       "remedies; a click on a heading sorts. A run writes it at its end unless --Hpm.report 0 is given. Give the "
+       "options of the run.",
+       "0 done, also where maps are missing",
+       TakesOptions::kAll,
+       {Row("output_path", &C::report_path, Anything(), "The file; not given: stereo/report.html")}},
       {"export", "Write finished maps as EXR, PFM, 16-bit PNG, NPY or as a coloured cloud (PLY) per image",
        "Writes IMAGE.depth.EXT and IMAGE.normal.EXT, and IMAGE.json, which holds the camera and what the numbers "
        "mean: depth is z in the camera's frame in model units, 0 where there is none; normals are unit vectors in "

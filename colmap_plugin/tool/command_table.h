@@ -18,6 +18,7 @@ namespace hpm {
 struct CommandOptions {
   bool fix = false;
   double sample_seconds = 30;
+  std::filesystem::path report_path;
   ExportOptions export_maps;
 };
 

@@ -4,7 +4,9 @@
 #include "colmap_plugin/inspect/check_maps.h"
 #include "colmap_plugin/inspect/export_maps.h"
 #include "colmap_plugin/inspect/plan_run.h"
+#include "colmap_plugin/inspect/write_report.h"
 #include "colmap_plugin/tool/dispatch.h"
+#include "colmap_plugin/tool/help.h"
 #include "colmap_plugin/tool/signals.h"
 #include "src/base/error.h"
 #include "src/base/platform/terminal.h"
@@ -43,7 +45,30 @@ RunSummary RunStereo(const ControllerOptions& options,
                      const LogSink& log,
                      const ProgressSink& progress,
                      const CancelToken& cancel) {
-  return PatchMatchController(options, log, progress, cancel).Run();
+  const RunSummary summary =
+      PatchMatchController(options, log, progress, cancel).Run();
+  if (!options.hpm.report) return summary;
+  try {
+    // What is wrong with the workspace was said by the run.
+    const std::filesystem::path path =
+        WriteReport(options, {}, VersionLine(), nullptr, cancel);
+    log(LogLevel::kInfo, "Report: " + path.string());
+  } catch (const Error& error) {
+    // The maps are there all the same.
+    if (error.code() == ErrorCode::kInterrupted) return summary;
+    log(LogLevel::kWarning, fmt::format("no report: {}", error.what()));
+  }
+  return summary;
+}
+
+int RunReport(const CommandCall& call) {
+  const std::filesystem::path path = WriteReport(call.options,
+                                                 call.own.report_path,
+                                                 VersionLine(),
+                                                 call.log,
+                                                 *call.cancel);
+  call.log(LogLevel::kInfo, "Report: " + path.string());
+  return 0;
 }
 
 int RunPlanCommand(const CommandCall& call) {
@@ -94,15 +119,17 @@ int RunProcess(const std::vector<std::string>& arguments) {
   // What OpenCV would print about a file is said by our own messages.
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
   const CancelToken& cancel = InstallSignalHandlers();
-  ToolEnvironment tool{
-      &std::cout,
-      &std::cerr,
-      IsTerminal(),
-      Columns(),
-      Seconds,
-      &cancel,
-      RunStereo,
-      {{"plan", RunPlanCommand}, {"check", RunCheck}, {"export", RunExport}}};
+  ToolEnvironment tool{&std::cout,
+                       &std::cerr,
+                       IsTerminal(),
+                       Columns(),
+                       Seconds,
+                       &cancel,
+                       RunStereo,
+                       {{"plan", RunPlanCommand},
+                        {"check", RunCheck},
+                        {"export", RunExport},
+                        {"report", RunReport}}};
   const int exit_code = RunTool(arguments, tool);
   const bool interrupted =
       exit_code == static_cast<int>(ErrorCode::kInterrupted);
