@@ -63,8 +63,8 @@ def decode(data, expected_bits=8):
             a, b = (line[x - n] if x >= n else 0), above[x]
             c = above[x - n] if x >= n else 0
             p = a + b - c
-            paeth = min((abs(p - a), 0, a), (abs(p - b), 1, b), (abs(p - c), 2, c))[2]
-            line[x] = (line[x] + (0, a, b, (a + b) // 2, paeth)[raw[begin]]) & 255
+            predicted = min((abs(p - a), 0, a), (abs(p - b), 1, b), (abs(p - c), 2, c))[2]
+            line[x] = (line[x] + (0, a, b, (a + b) // 2, predicted)[raw[begin]]) & 255
         above = bytes(line)
         rows.append(above)
     return width, height, channels, b"".join(rows)
