@@ -7,6 +7,7 @@
 #include "colmap_plugin/controller/image_contents.h"
 #include "colmap_plugin/controller/run_budget.h"
 #include "colmap_plugin/controller/run_resources.h"
+#include "colmap_plugin/controller/run_setup.h"
 #include "colmap_plugin/controller/run_statistics.h"
 #include "colmap_plugin/controller/thread_supply.h"
 #include "colmap_plugin/formats/atomic_file.h"
@@ -16,7 +17,6 @@
 #include "colmap_plugin/workspace/output_check.h"
 #include "colmap_plugin/workspace/run_lock.h"
 #include "colmap_plugin/workspace/run_record.h"
-#include "colmap_plugin/workspace/source_problems.h"
 #include "colmap_plugin/workspace/stamp.h"
 #include "src/base/error.h"
 #include "src/base/retries.h"
@@ -31,18 +31,6 @@
 
 namespace hpm {
 namespace {
-
-// The largest image of the workspace decides for all, so that all have the same
-// stages, whichever of them this run computes.
-int LevelsOf(const Method& method, const Workspace& workspace) {
-  int side = 1;
-  for (int image = 0; image < workspace.num_images(); ++image) {
-    if (!workspace.usable(image)) continue;
-    const Camera& camera = workspace.camera(image);
-    side = std::max({side, camera.width, camera.height});
-  }
-  return AutomaticLevels(method, side);
-}
 
 // Problems of images that are only sources and have something to do.
 int CountNeededSources(const std::vector<StereoProblem>& problems,
@@ -67,14 +55,6 @@ std::string WithoutGeometryNote(const Method& method) {
       method.priors == Priors::kRegions
           ? ", and surfaces with little texture get no priors"
           : "");
-}
-
-// Behind the references, which come first.
-void AddSourceProblems(const Workspace& workspace,
-                       const ProblemOptions& options,
-                       std::vector<StereoProblem>* problems) {
-  for (StereoProblem& problem : SourceProblems(workspace, *problems, options))
-    problems->push_back(std::move(problem));
 }
 
 // What a user would not expect of the run that follows.
@@ -159,7 +139,14 @@ PatchMatchController::PatchMatchController(const ControllerOptions& options,
                                            ProgressSink progress,
                                            const CancelToken& cancel)
     : options_(options),
-      log_(std::move(log)),
+      log_([this, log = std::move(log)](LogLevel level,
+                                        const std::string& message) {
+        if (level == LogLevel::kWarning) {
+          const std::lock_guard<std::mutex> lock(mutex_);
+          warnings_.push_back(message);
+        }
+        log(level, message);
+      }),
       progress_(std::move(progress)),
       cancel_(cancel) {}
 
@@ -189,10 +176,7 @@ RunSummary PatchMatchController::Run() {
 
   const bool geometric = options_.patch_match.geom_consistency;
   if (geometric) AddSourceProblems(workspace, problem_options, &problems);
-  if (options_.hpm.num_levels <= 0) {
-    options_.hpm.num_levels =
-        LevelsOf(FindMethod(options_.hpm.method), workspace);
-  }
+  SetLevels(workspace, &options_);
   const Schedule schedule = MakeSchedule(MakeScheduleOptions(options_));
   StagePlan plan(workspace, problems, schedule, options_, &contents, stop);
   PrepareOutputs(workspace, problems, BytesToWrite(problems, plan), log_);
@@ -266,6 +250,7 @@ RunSummary PatchMatchController::Run() {
       resources.backend_name,
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start)
           .count());
+  summary.warnings = warnings_;
   summary.num_fusable = CountFinalMaps(workspace, plan);
   if (statistics.AnyComputed() || statistics.AnyFailed()) {
     WriteRunRecord(workspace.StatePath(), statistics.Record(options_, summary));

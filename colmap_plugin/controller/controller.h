@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -35,6 +36,7 @@ struct RunSummary {
   int num_kept = 0;  // images whose maps were all complete and current
   std::vector<std::string>
       failed;  // names of images that could not be computed
+  std::vector<std::string> warnings;  // of the log
   double seconds = 0;
   // Of the final maps written in this run, 0..1; nothing where there were none.
   std::optional<double> valid_pixel_share;
@@ -75,6 +77,8 @@ class PatchMatchController {
                    RunStatistics* statistics) const;
 
   ControllerOptions options_;
+  std::mutex mutex_;  // of warnings_
+  std::vector<std::string> warnings_;
   LogSink log_;
   ProgressSink progress_;
   const CancelToken& cancel_;

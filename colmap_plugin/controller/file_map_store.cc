@@ -87,7 +87,7 @@ void FileMapStore::Write(int stage, int problem, StageOutput* output) {
   const int image = problems_[problem].ref_image;
   const std::string& name = workspace_.ImageName(image);
   const std::string stage_name = plan_.NameOf(stage, image);
-  if (!output->keep.empty()) {
+  if (!output->consistent.empty()) {
     PhaseTimer timer(&output->seconds, "filter");
     result.losses = CountFilterLosses(output->views,
                                       *output->map,

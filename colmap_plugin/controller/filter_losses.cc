@@ -133,6 +133,8 @@ FilterLosses CountFilterLosses(const ViewSet& views,
       ++num_looked_at;
       const size_t at = static_cast<size_t>(row) * map.width + col;
       if (keep[at]) continue;
+      // What is masked is not lost.
+      if (views.ref.image->IsGap(at)) continue;
       const int num = __builtin_popcount(consistent[at]);
       ++counts[num == 0 ? judge.Last(map.planes[at], col, row)
                : num < filter.min_num_consistent

@@ -24,6 +24,9 @@ void ImageContents::Read(const std::vector<int>& images,
     content->state = StateOf(path);
     try {
       content->hash = HashFile(path, cancel);
+      const auto& mask = workspace_->MaskPath(unknown[i]);
+      content->mask_state = StateOf(mask);
+      if (!mask.empty()) content->hash += " mask " + HashFile(mask, cancel);
     } catch (const Error& error) {
       if (error.code() != ErrorCode::kBadInput) throw;
     }
@@ -33,7 +36,8 @@ void ImageContents::Read(const std::vector<int>& images,
 bool ImageContents::IsUnchanged(int image) const {
   const Content& content = contents_[image];
   return !content.hash.empty() && content.state &&
-         StateOf(workspace_->ImagePath(image)) == content.state;
+         StateOf(workspace_->ImagePath(image)) == content.state &&
+         StateOf(workspace_->MaskPath(image)) == content.mask_state;
 }
 
 }  // namespace hpm

@@ -1,5 +1,6 @@
-// What the files of the images contain, as a hash: maps must never be kept when
-// an image became another, whatever its size and time say.
+// What the files of the images and their masks contain, as a hash: maps must
+// never be kept when an image or mask became another, whatever its size and
+// time say.
 #pragma once
 
 #include "colmap_plugin/formats/published_file.h"
@@ -33,6 +34,7 @@ class ImageContents {
     bool is_known = false;
     std::string hash;
     std::optional<FileState> state;  // before it was read
+    std::optional<FileState> mask_state;
   };
 
   const Workspace* workspace_;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include <opencv2/imgcodecs.hpp>
@@ -13,13 +12,12 @@
 namespace hpm {
 namespace {
 
-void WriteJpeg(const std::filesystem::path& path, const cv::Mat& image) {
+constexpr int kQuality = 92;
+
+std::string EncodeJpeg(const cv::Mat& image, int quality) {
   std::vector<unsigned char> bytes;
-  cv::imencode(".jpg", image, bytes, {cv::IMWRITE_JPEG_QUALITY, 92});
-  WriteFileAtomically(
-      path,
-      std::string_view(reinterpret_cast<const char*>(bytes.data()),
-                       bytes.size()));
+  cv::imencode(".jpg", image, bytes, {cv::IMWRITE_JPEG_QUALITY, quality});
+  return {bytes.begin(), bytes.end()};
 }
 
 float Percentile(std::vector<float> values, double share) {
@@ -76,11 +74,21 @@ cv::Mat ColorNormals(const Map& normal) {
 
 }  // namespace
 
+std::string DepthPreview(const Map& depth, int quality) {
+  return EncodeJpeg(ColorDepth(depth), quality);
+}
+
+std::string NormalPreview(const Map& normal, int quality) {
+  return EncodeJpeg(ColorNormals(normal), quality);
+}
+
 void WritePreviews(const std::filesystem::path& folder,
                    const std::string& name,
                    const DepthAndNormal& maps) {
-  WriteJpeg(folder / (name + ".depth.jpg"), ColorDepth(maps.depth));
-  WriteJpeg(folder / (name + ".normal.jpg"), ColorNormals(maps.normal));
+  WriteFileAtomically(folder / (name + ".depth.jpg"),
+                      DepthPreview(maps.depth, kQuality));
+  WriteFileAtomically(folder / (name + ".normal.jpg"),
+                      NormalPreview(maps.normal, kQuality));
 }
 
 }  // namespace hpm

@@ -4,6 +4,7 @@
 #include "colmap_plugin/controller/ray_convention.h"
 
 #include <filesystem>
+#include <string>
 
 namespace hpm {
 
@@ -14,5 +15,9 @@ namespace hpm {
 void WritePreviews(const std::filesystem::path& folder,
                    const std::string& name,
                    const DepthAndNormal& maps);
+
+// The same pictures as the bytes of JPEG files.
+std::string DepthPreview(const Map& depth, int quality);
+std::string NormalPreview(const Map& normal, int quality);
 
 }  // namespace hpm

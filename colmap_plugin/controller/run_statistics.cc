@@ -92,6 +92,7 @@ nlohmann::json RunStatistics::Record(const ControllerOptions& options,
       {"sources_computed", worked_on_.size() - computed_.size()},
       {"images_kept", summary.num_kept},
       {"images_failed", summary.failed},
+      {"warnings", summary.warnings},
       {"images", images_}};
 }
 

@@ -106,6 +106,7 @@ std::vector<OptionSpec> MakeTable() {
   const RowsOf<P> Stereo = {"PatchMatchStereo.", &C::patch_match};
   const RowsOf<H> Hpm = {"Hpm.", &C::hpm};
   const RowsOf<W> Workspace = {"", &C::workspace};
+  const RowsOf<W> HpmWorkspace = {"Hpm.", &C::workspace};
   const RowsOf<W> StereoWorkspace = {"PatchMatchStereo.", &C::workspace};
   const RowsOf<I> Problems = {"", &C::problems};
   const RowsOf<I> StereoProblems = {"PatchMatchStereo.", &C::problems};
@@ -131,8 +132,13 @@ std::vector<OptionSpec> MakeTable() {
           "num_fine_geom_passes where they are not given (docs/benchmarks.md)"),
       Hpm(kCommon, kNothing, "overwrite", &H::overwrite, Anything(),
           "Compute maps again that are complete and made with the same options"),
+      Hpm(kCommon, kNothing, "report", &H::report, Anything(),
+          "Write stereo/report.html at the end: pictures, losses and times of all images, warnings with remedies"),
       Hpm(kCommon, kNothing, "previews", &H::previews, Anything(),
           "Write colour pictures of the maps to stereo/previews"),
+      HpmWorkspace(kCommon, kInputs, "mask_path", &W::mask_path, Anything(),
+                "Folder with masks of the undistorted images: of a/b.jpg the mask is a/b.jpg.png, as in COLMAP; where it "
+                "is 0 the image is ignored, as reference and as source; black borders are found without"),
       Stereo(kCommon, kNothing, "num_threads", &P::num_threads, Between(-1, kMaxThreads),
              "Threads to use; -1 or 0: all cores"),
       Hpm(kCommon, kRounding, "device", &H::device, OneOf({"auto", "cpu", "cuda"}),

@@ -1,6 +1,7 @@
 #include "colmap_plugin/tool/completion.h"
 
 #include "colmap_plugin/options/option_table.h"
+#include "colmap_plugin/tool/command_table.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -25,15 +26,19 @@ _hpm_mvs() {
 
 constexpr char kWords[] = R"(  esac
   if ((COMP_CWORD == 1)) && [[ $current != -* ]]; then
-    COMPREPLY=($(compgen -W "patch_match_stereo help version" -- "$current"))
+    COMPREPLY=($(compgen -W "{}" -- "$current"))
     return
   fi
-  COMPREPLY=($(compgen -W "--help {}" -- "$current"))
+  local names="--help {}"
+  case ${{COMP_WORDS[1]}} in
+{}  esac
+  COMPREPLY=($(compgen -W "$names" -- "$current"))
 }}
 complete -o filenames -F _hpm_mvs hpm_mvs
 )";
 
-std::string ValueCase(const OptionSpec& option) {
+template <class Option>
+std::string ValueCase(const Option& option) {
   const std::string type = TypeText(option);
   std::string reply;
   if (!option.allowed.choices.empty()) {
@@ -63,7 +68,25 @@ std::string BashCompletion() {
     text += ValueCase(option);
     names += (names.empty() ? "--" : " --") + option.name;
   }
-  return text + fmt::format(kWords, names);
+  std::string of_commands;
+  for (const Command& command : CommandTable()) {
+    if (command.description.empty()) continue;
+    std::string own;
+    for (const CommandOption& option : command.options) {
+      text += ValueCase(option);
+      own += " --" + option.name;
+    }
+    for (const OptionSpec& option : OptionTable()) {
+      if (command.takes != TakesOptions::kAll && Takes(command, option))
+        own += " --" + option.name;
+    }
+    of_commands +=
+        fmt::format("    {}) names=\"{}{}\" ;;\n",
+                    command.name,
+                    command.takes == TakesOptions::kAll ? "$names" : "--help",
+                    own);
+  }
+  return text + fmt::format(kWords, CommandNames(" "), names, of_commands);
 }
 
 }  // namespace hpm

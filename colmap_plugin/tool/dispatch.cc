@@ -1,5 +1,6 @@
 #include "colmap_plugin/tool/dispatch.h"
 
+#include "colmap_plugin/tool/command_table.h"
 #include "colmap_plugin/tool/completion.h"
 #include "colmap_plugin/tool/help.h"
 #include "colmap_plugin/tool/man_page.h"
@@ -15,7 +16,16 @@ std::string HelpAs(const std::string& form) {
   if (form == "--markdown") return OptionsMarkdown();
   if (form == "--man") return ManPage();
   if (form == "--bash") return BashCompletion();
-  return HelpText();
+  const Command* command = FindCommand(form);
+  const bool has_own_help = command != nullptr && !command->description.empty();
+  return has_own_help ? CommandHelp(*command) : HelpText();
+}
+
+int FailUnknown(const std::string& word, const ToolEnvironment& tool) {
+  *tool.err << "ERROR: unknown command '" << OneLine(Shortened(word))
+            << "'; commands: " << CommandNames(", ") << "\n"
+            << std::flush;
+  return static_cast<int>(ErrorCode::kUsage);
 }
 
 }  // namespace
@@ -26,17 +36,18 @@ int RunTool(std::vector<std::string> arguments, const ToolEnvironment& tool) {
     return Print(VersionLine() + "\n", tool);
   }
   if (word == "help") {
+    const bool is_known = arguments.size() < 2 || arguments[1][0] == '-' ||
+                          FindCommand(arguments[1]) != nullptr;
+    if (!is_known) return FailUnknown(arguments[1], tool);
     return Print(HelpAs(arguments.size() == 2 ? arguments[1] : ""), tool);
   }
-  if (word == "patch_match_stereo") {
-    arguments.erase(arguments.begin());
-  } else if (word.empty() || word[0] != '-') {
-    *tool.err << "ERROR: unknown command '" << OneLine(Shortened(word))
-              << "'; commands: patch_match_stereo, help, version\n"
-              << std::flush;
-    return static_cast<int>(ErrorCode::kUsage);
-  }
-  return RunPatchMatchStereo(arguments, tool);
+  if (!word.empty() && word[0] == '-')
+    return RunPatchMatchStereo(arguments, tool);
+  const Command* command = FindCommand(word);
+  if (command == nullptr) return FailUnknown(word, tool);
+  arguments.erase(arguments.begin());
+  return word == "patch_match_stereo" ? RunPatchMatchStereo(arguments, tool)
+                                      : RunCommand(*command, arguments, tool);
 }
 
 }  // namespace hpm

@@ -1,7 +1,7 @@
 // Picks the command from the first word.
 #pragma once
 
-#include "colmap_plugin/tool/cmd_patch_match_stereo.h"
+#include "colmap_plugin/tool/run_command.h"
 
 #include <string>
 #include <vector>

@@ -23,7 +23,8 @@ Dense stereo for a COLMAP workspace, in place of `colmap patch_match_stereo`.
 
 Usage:
   hpm_mvs patch_match_stereo --workspace_path DENSE [options]
-  hpm_mvs help | version
+  hpm_mvs COMMAND --workspace_path DENSE [options]
+  hpm_mvs help [COMMAND] | version
 
 Example:
   colmap image_undistorter --image_path images --input_path sparse/0 --output_path dense
@@ -40,7 +41,8 @@ failed, 5 out of memory or disk, 6 device, 7 workspace in use, 130/143/129 inter
 A run that was stopped goes on where it was when the same command is given again.
 )";
 
-constexpr char kMarkdownHead[] = R"(# Options of `hpm_mvs patch_match_stereo`
+constexpr char kMarkdownHead[] =
+    R"(# Options of `hpm_mvs patch_match_stereo`, and the other commands
 
 This file is the output of `hpm_mvs help --markdown`; a test compares the two.
 
@@ -91,19 +93,59 @@ std::string MarkdownRow(const OptionSpec& option) {
 }
 
 // "--name arg (=default)" as COLMAP prints it, the meaning below.
-std::string HelpEntry(const OptionSpec& option) {
-  const std::string value = DefaultText(option);
-  std::string meaning = option.help + ".";
-  if (!option.allowed.text.empty()) {
-    meaning += " Allowed: " + option.allowed.text + ".";
-  }
-  if (!option.no_effect.empty()) {
-    meaning += " No effect: " + option.no_effect + ".";
-  }
+std::string Entry(const std::string& name,
+                  const std::string& value,
+                  const std::string& help,
+                  const std::string& allowed,
+                  const std::string& no_effect) {
+  std::string meaning = help + ".";
+  if (!allowed.empty()) meaning += " Allowed: " + allowed + ".";
+  if (!no_effect.empty()) meaning += " No effect: " + no_effect + ".";
   return fmt::format("  --{} arg{}\n{}",
-                     option.name,
+                     name,
                      value.empty() ? "" : " (=" + value + ")",
                      Wrap(meaning, 80, 6));
+}
+
+std::string HelpEntry(const OptionSpec& option) {
+  return Entry(option.name,
+               DefaultText(option),
+               option.help,
+               option.allowed.text,
+               option.no_effect);
+}
+
+constexpr char kMarkdownTable[] =
+    "| name | type | default | allowed | meaning "
+    "|\n|---|---|---|---|---|\n";
+
+// The commands beside patch_match_stereo.
+std::string CommandsMarkdown() {
+  std::string text;
+  for (const Command& command : CommandTable()) {
+    if (command.description.empty()) continue;
+    text += fmt::format("\n## `hpm_mvs {}`\n\n{}.\n\n{}\n\n",
+                        command.name,
+                        command.summary,
+                        command.description);
+    text += command.takes == TakesOptions::kAll
+                ? "Takes the options of `patch_match_stereo`, too.\n"
+                : "Takes `--workspace_path`, `--workspace_format` and "
+                  "`--pmvs_option_name`, too.\n";
+    if (!command.options.empty()) text += std::string("\n") + kMarkdownTable;
+    for (const CommandOption& option : command.options) {
+      const std::string value = DefaultText(option);
+      text += fmt::format("| `{}` | {} | {} | {} | {}. |\n",
+                          option.name,
+                          TypeText(option),
+                          value.empty() ? "" : "`" + value + "`",
+                          option.allowed.text,
+                          option.help);
+    }
+    if (!command.exit_codes.empty())
+      text += "\nExit codes: " + command.exit_codes + ".\n";
+  }
+  return text;
 }
 
 }  // namespace
@@ -113,7 +155,9 @@ std::string VersionLine() {
 }
 
 std::string HelpText() {
-  std::string text = VersionLine() + "\n" + kIntroduction;
+  std::string text = VersionLine() + "\n" + kIntroduction + "\nCommands:\n";
+  for (const Command& command : CommandTable())
+    text += "  " + command.name + "\n" + Wrap(command.summary + ".", 80, 6);
   for (const GroupTitle& group : kGroups) {
     text += fmt::format("\n{}:\n", group.title);
     if (group.group == OptionGroup::kCommon)
@@ -123,6 +167,36 @@ std::string HelpText() {
     }
   }
   return text + kExitCodes;
+}
+
+std::string CommandHelp(const Command& command) {
+  std::string text = fmt::format(
+      "hpm_mvs {} --workspace_path DENSE [options]\n\n", command.name);
+  text += Wrap(command.summary + ".", 80, 0);
+  text += "\n" + Wrap(command.description, 80, 0);
+  text += "\nOptions:\n  -h [ --help ]\n      Print this text.\n";
+  for (const CommandOption& option : command.options) {
+    text += Entry(
+        option.name, DefaultText(option), option.help, option.allowed.text, "");
+  }
+  for (const OptionSpec& option : OptionTable()) {
+    const bool shown = command.takes == TakesOptions::kWorkspace ||
+                       option.name == "workspace_path";
+    if (shown && Takes(command, option)) text += HelpEntry(option);
+  }
+  if (command.takes == TakesOptions::kAll) {
+    text += Wrap(
+        "All options of patch_match_stereo are taken, too; hpm_mvs "
+        "help lists them.",
+        80,
+        2);
+  }
+  if (!command.exit_codes.empty())
+    text += "\n" + Wrap("Exit codes: " + command.exit_codes +
+                            "; the others as of patch_match_stereo.",
+                        80,
+                        0);
+  return text;
 }
 
 std::string OptionsMarkdown() {
@@ -136,7 +210,7 @@ std::string OptionsMarkdown() {
       if (option.group == group.group) text += MarkdownRow(option);
     }
   }
-  return text + kMarkdownExitCodes;
+  return text + kMarkdownExitCodes + CommandsMarkdown();
 }
 
 }  // namespace hpm

@@ -1,6 +1,7 @@
 #include "colmap_plugin/tool/man_page.h"
 
 #include "colmap_plugin/options/option_table.h"
+#include "colmap_plugin/tool/command_table.h"
 
 #include <fmt/format.h>
 
@@ -16,7 +17,14 @@ hpm_mvs \- dense stereo for a COLMAP workspace
 .I DENSE
 .RI [ options ]
 .br
+.B hpm_mvs
+.I COMMAND
+.B \-\-workspace_path
+.I DENSE
+.RI [ options ]
+.br
 .B hpm_mvs help
+.RI [ COMMAND ]
 .RB [ \-\-markdown | \-\-man | \-\-bash ]
 .br
 .B hpm_mvs version
@@ -27,7 +35,9 @@ leaves it, in place of
 .BR "colmap patch_match_stereo" :
 the same options, the same files in, the same files out.
 A run that was stopped goes on where it was when the same command is given again.
-.SH OPTIONS
+)";
+
+constexpr char kOptionsHead[] = R"(.SH OPTIONS
 Options are written
 .BI \-\-name " value"
 or
@@ -91,14 +101,13 @@ std::string Roff(const std::string& text) {
   return out;
 }
 
-std::string Entry(const OptionSpec& option) {
+template <class Option>
+std::string Entry(const Option& option, const std::string& no_effect) {
   std::string meaning = option.help + ".";
   if (!option.allowed.text.empty()) {
     meaning += " Allowed: " + option.allowed.text + ".";
   }
-  if (!option.no_effect.empty()) {
-    meaning += " No effect: " + option.no_effect + ".";
-  }
+  if (!no_effect.empty()) meaning += " No effect: " + no_effect + ".";
   const std::string value = DefaultText(option);
   return fmt::format(".TP\n.BI {} \" {}\"{}\n{}\n",
                      Roff("--" + option.name),
@@ -107,11 +116,29 @@ std::string Entry(const OptionSpec& option) {
                      Roff(meaning));
 }
 
+std::string Commands() {
+  std::string text = ".SH COMMANDS\n";
+  for (const Command& command : CommandTable()) {
+    text += fmt::format(
+        ".TP\n.B {}\n{}\n", command.name, Roff(command.summary + "."));
+    if (command.description.empty()) continue;
+    text += Roff(command.description) + "\n";
+    if (!command.exit_codes.empty())
+      text += Roff("Exit codes: " + command.exit_codes + ".") + "\n";
+    text += ".RS\n";
+    for (const CommandOption& option : command.options)
+      text += Entry(option, "");
+    text += ".RE\n";
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string ManPage() {
-  std::string text = kHead;
-  for (const OptionSpec& option : OptionTable()) text += Entry(option);
+  std::string text = std::string(kHead) + Commands() + kOptionsHead;
+  for (const OptionSpec& option : OptionTable())
+    text += Entry(option, option.no_effect);
   return text + kTail;
 }
 

@@ -1,7 +1,12 @@
 #include "colmap_plugin/tool/run_process.h"
 
 #include "colmap_plugin/controller/controller.h"
+#include "colmap_plugin/inspect/check_maps.h"
+#include "colmap_plugin/inspect/export_maps.h"
+#include "colmap_plugin/inspect/plan_run.h"
+#include "colmap_plugin/inspect/write_report.h"
 #include "colmap_plugin/tool/dispatch.h"
+#include "colmap_plugin/tool/help.h"
 #include "colmap_plugin/tool/signals.h"
 #include "src/base/error.h"
 #include "src/base/platform/terminal.h"
@@ -13,6 +18,7 @@
 #include <string_view>
 #include <vector>
 
+#include <fmt/format.h>
 #include <opencv2/core/utils/logger.hpp>
 
 namespace hpm {
@@ -39,7 +45,71 @@ RunSummary RunStereo(const ControllerOptions& options,
                      const LogSink& log,
                      const ProgressSink& progress,
                      const CancelToken& cancel) {
-  return PatchMatchController(options, log, progress, cancel).Run();
+  const RunSummary summary =
+      PatchMatchController(options, log, progress, cancel).Run();
+  if (!options.hpm.report) return summary;
+  try {
+    // What is wrong with the workspace was said by the run.
+    const std::filesystem::path path =
+        WriteReport(options, {}, VersionLine(), nullptr, cancel);
+    log(LogLevel::kInfo, "Report: " + path.string());
+  } catch (const Error& error) {
+    // The maps are there all the same.
+    if (error.code() == ErrorCode::kInterrupted) return summary;
+    log(LogLevel::kWarning, fmt::format("no report: {}", error.what()));
+  }
+  return summary;
+}
+
+int RunReport(const CommandCall& call) {
+  const std::filesystem::path path = WriteReport(call.options,
+                                                 call.own.report_path,
+                                                 VersionLine(),
+                                                 call.log,
+                                                 *call.cancel);
+  call.log(LogLevel::kInfo, "Report: " + path.string());
+  return 0;
+}
+
+int RunPlanCommand(const CommandCall& call) {
+  const RunPlan plan =
+      PlanRun(call.options, call.own.sample_seconds, call.log, *call.cancel);
+  std::string text;
+  for (const std::string& line : plan.lines) text += line + "\n";
+  const int printed = call.print(text);
+  for (const std::string& problem : plan.problems)
+    call.log(LogLevel::kError, problem);
+  if (plan.problems.empty())
+    call.log(LogLevel::kInfo, "Nothing stops this run");
+  return plan.exit_code != 0 ? plan.exit_code : printed;
+}
+
+int RunCheck(const CommandCall& call) {
+  const MapCheck check =
+      CheckMaps(call.options, call.own.fix, call.log, *call.cancel);
+  const int printed = call.print(CheckText(check));
+  if (printed != 0) return printed;
+  for (const Finding& finding : check.findings) {
+    if (finding.kind == FindingKind::kDamaged && !finding.removed)
+      return static_cast<int>(ErrorCode::kBadInput);
+  }
+  return check.findings.empty() ? 0 : static_cast<int>(ErrorCode::kPartial);
+}
+
+int RunExport(const CommandCall& call) {
+  const ExportResult result = ExportMaps(
+      call.options.workspace, call.own.export_maps, call.log, *call.cancel);
+  if (!result.failed.empty()) {
+    call.log(LogLevel::kError,
+             fmt::format("{} images could not be exported, the first: {}",
+                         result.failed.size(),
+                         result.failed.front()));
+  }
+  call.log(LogLevel::kInfo,
+           fmt::format("{} images exported to {}",
+                       result.num_images,
+                       result.folder.string()));
+  return result.failed.empty() ? 0 : static_cast<int>(ErrorCode::kPartial);
 }
 
 }  // namespace
@@ -55,7 +125,11 @@ int RunProcess(const std::vector<std::string>& arguments) {
                        Columns(),
                        Seconds,
                        &cancel,
-                       RunStereo};
+                       RunStereo,
+                       {{"plan", RunPlanCommand},
+                        {"check", RunCheck},
+                        {"export", RunExport},
+                        {"report", RunReport}}};
   const int exit_code = RunTool(arguments, tool);
   const bool interrupted =
       exit_code == static_cast<int>(ErrorCode::kInterrupted);

@@ -25,11 +25,9 @@ void CheckWritable(const fs::path& folder) {
 }
 
 void CheckFreeSpace(const fs::path& folder, uint64_t num_bytes) {
-  std::error_code error;
-  const fs::space_info disk = fs::space(folder, error);
-  // Some network file systems report no sizes; then the writes themselves must
-  // tell.
-  if (error || disk.capacity == 0 || disk.available >= num_bytes) return;
+  // Where nothing tells, the writes themselves must.
+  const std::optional<uint64_t> num_free = FreeBytes(folder);
+  if (!num_free || *num_free >= num_bytes) return;
   throw Error(
       ErrorCode::kOutOfResources,
       fmt::format(
@@ -37,7 +35,7 @@ void CheckFreeSpace(const fs::path& folder, uint64_t num_bytes) {
           "--PatchMatchStereo.max_image_size or list fewer images",
           folder.string(),
           num_bytes,
-          disk.available));
+          *num_free));
 }
 
 // Asks the file system itself: what it allows differs from one to another.
@@ -101,10 +99,17 @@ uint64_t DepthAndNormalMapBytes(const Camera& camera) {
   return header_bytes(1) + header_bytes(3) + 4 * sizeof(float) * num_pixels;
 }
 
-void PrepareOutputs(const Workspace& workspace,
-                    const std::vector<StereoProblem>& problems,
-                    uint64_t num_bytes,
-                    const LogSink& log) {
+std::optional<uint64_t> FreeBytes(const fs::path& folder) {
+  std::error_code error;
+  const fs::space_info disk = fs::space(folder, error);
+  // Some network file systems report no sizes.
+  if (error || disk.capacity == 0) return std::nullopt;
+  return disk.available;
+}
+
+void CheckOutputs(const Workspace& workspace,
+                  const std::vector<StereoProblem>& problems,
+                  uint64_t num_bytes) {
   std::set<fs::path> folders = {workspace.StatePath()};
   for (const StereoProblem& problem : problems) {
     if (!problem.is_reference) continue;
@@ -124,7 +129,13 @@ void PrepareOutputs(const Workspace& workspace,
     CheckNameFits(StampPath(workspace.StatePath(), name, "photometric"), name);
   }
   CheckFreeSpace(*folders.begin(), num_bytes);
+}
 
+void PrepareOutputs(const Workspace& workspace,
+                    const std::vector<StereoProblem>& problems,
+                    uint64_t num_bytes,
+                    const LogSink& log) {
+  CheckOutputs(workspace, problems, num_bytes);
   if (!Exists(workspace.FusionCfgPath())) {
     std::vector<std::string> names;
     for (const StereoProblem& problem : problems) {

@@ -94,6 +94,7 @@ Workspace::Workspace(const WorkspaceOptions& options, const LogSink& log)
   }
   CheckNames();
   MakeCameras(log);
+  FindMasks(log);
 }
 
 int Workspace::ImageIndex(const std::string& name) const {
@@ -124,6 +125,7 @@ double Workspace::Depth(int index, const Eigen::Vector3d& xyz) const {
 
 ImageDecoding Workspace::Decoding(int index) const {
   ImageDecoding decoding;
+  decoding.mask = MaskPath(index);
   const std::optional<ImageSize>& file = file_size(index);
   if (!file) return decoding;
   if (file->depth != SampleDepth::k8) decoding.stretch = deep_range_;
@@ -313,6 +315,65 @@ void Workspace::MakeCameras(const LogSink& log) {
         fmt::format("{}; the cameras are scaled to the images.",
                     other_size.Line(num_images(),
                                     "of another size than their camera")));
+  }
+}
+
+void Workspace::FindMasks(const LogSink& log) {
+  mask_paths_.assign(num_images(), {});
+  const fs::path& folder = options_.mask_path;
+  if (folder.empty()) return;
+  constexpr const char* kNaming =
+      "the mask of a/b.jpg is a/b.jpg.png below this folder, 0 = ignored, of "
+      "the undistorted image";
+  ImageFault missing, undecodable, other_size;
+  int num_pictures = 0;
+  for (int i = 0; i < num_images(); ++i) {
+    if (!has_picture_[i] || !file_sizes_[i]) continue;
+    ++num_pictures;
+    const ImageFile mask = FindImageFile(folder, ImageName(i) + ".png");
+    if (!mask.exists) {
+      missing.Add(ImageName(i));
+    } else if (!mask.size) {
+      undecodable.Add(mask.path.string());
+    } else if (mask.size->width != file_sizes_[i]->width ||
+               mask.size->height != file_sizes_[i]->height) {
+      other_size.Add(fmt::format("{} is {}x{}, its image {}x{}",
+                                 mask.path.string(),
+                                 mask.size->width,
+                                 mask.size->height,
+                                 file_sizes_[i]->width,
+                                 file_sizes_[i]->height));
+    } else {
+      mask_paths_[i] = mask.path;
+    }
+  }
+  const auto refuse = [&](const std::string& what) {
+    throw Error(ErrorCode::kBadInput,
+                fmt::format("--Hpm.mask_path {}: {}", folder.string(), what));
+  };
+  if (undecodable.num() > 0) {
+    refuse(undecodable.Line(num_pictures, "with a mask that is no image") +
+           "; write it again as PNG");
+  }
+  if (other_size.num() > 0) {
+    refuse(other_size.Line(num_pictures, "with a mask of another size") +
+           "; masks belong to the undistorted images: undistort them as the "
+           "images were");
+  }
+  if (num_pictures > 0 && missing.num() == num_pictures)
+    refuse(std::string("no image has a mask; ") + kNaming);
+  if (!log) return;
+  log(LogLevel::kInfo,
+      fmt::format("Masks: {} of {} images have one; 0 = ignored, and they must "
+                  "fit the undistorted images",
+                  num_pictures - missing.num(),
+                  num_pictures));
+  if (missing.num() > 0) {
+    log(LogLevel::kWarning,
+        fmt::format("--Hpm.mask_path {}: {}; {}",
+                    folder.string(),
+                    missing.Line(num_pictures, "without a mask are used whole"),
+                    kNaming));
   }
 }
 

@@ -21,6 +21,9 @@ struct WorkspaceOptions {
   std::string format = "COLMAP";  // or "PMVS", any case
   std::string pmvs_option_name = "option-all";
   int max_image_size = -1;  // longest side in pixels, <= 0: off
+  // Folder with a mask <image name>.png for each image that has one, of the
+  // image's own size, 0 = ignored; empty: none.
+  std::filesystem::path mask_path;
 };
 
 enum class MapKind { kDepth, kNormal, kConsistencyGraph };
@@ -35,7 +38,8 @@ class Workspace {
   // that is missing or has other proportions than its camera marks the image as
   // without picture, with one warning for all. PMVS: (re)writes patch-match.cfg
   // and fusion.cfg from the option file. Throws Error(kBadInput) naming the
-  // missing or damaged file, or if no image is usable or has a picture;
+  // missing or damaged file, or if no image is usable or has a picture, or for
+  // masks that are not the images' or of another size;
   // Error(kUsage) for an unknown format.
   Workspace(const WorkspaceOptions& options, const LogSink& log);
 
@@ -73,6 +77,10 @@ class Workspace {
   const std::optional<ImageSize>& file_size(int index) const {
     return file_sizes_[index];
   }
+  // The image's mask; empty if it has none.
+  const std::filesystem::path& MaskPath(int index) const {
+    return mask_paths_[index];
+  }
   // How the image file becomes the grey image of the camera's size.
   ImageDecoding Decoding(int index) const;
   // For all images of more than 8 bits (see deep_images.h).
@@ -105,6 +113,7 @@ class Workspace {
   void ReadPmvs();
   void CheckNames();
   void MakeCameras(const LogSink& log);
+  void FindMasks(const LogSink& log);
   std::filesystem::path ImageFolder() const;
 
   WorkspaceOptions options_;
@@ -114,6 +123,7 @@ class Workspace {
   std::vector<Eigen::Vector3d> centers_;
   std::vector<bool> usable_;
   std::vector<std::filesystem::path> image_paths_;
+  std::vector<std::filesystem::path> mask_paths_;
   std::vector<bool> has_picture_;
   std::vector<std::optional<ImageSize>> file_sizes_;
   std::optional<GreyRange> deep_range_;

@@ -16,6 +16,8 @@ struct PatchShape {
   float spatial[kPatchSize];  // exp(-|q - p| / (2 sigma_spatial^2)), row-major
   float color_falloff;        // 1 / (2 sigma_color^2), per grey level
   float color_cut;            // 1 / (2 cut_color^2), per grey level squared
+  // Reference pixels of value 0 show nothing (src/image/gaps.h).
+  bool ref_has_gaps;
 };
 
 // Weight of a sample whose grey value differs by `difference` >= 0 from the
@@ -47,6 +49,7 @@ HPM_HD PatchShape MakePatchShape(int radius,
     }
   }
   shape.color_falloff = 1 / (2 * sigma_color * sigma_color);
+  shape.ref_has_gaps = false;
   shape.color_cut = cut_color > 0 ? 1 / (2 * cut_color * cut_color) : 0;
   return shape;
 }
@@ -76,9 +79,10 @@ HPM_HD RefPatch MakeRefPatch(const PatchShape& shape,
   for (int j = 0; j < kPatchAxis; ++j) {
     for (int i = 0; i < kPatchAxis; ++i) {
       const int k = j * kPatchAxis + i;
-      const float r =
-          grey(col + shape.offset[i], row + shape.offset[j]) - patch.center;
-      const float w = shape.spatial[k] * color_weight(fabsf(r));
+      const float value = grey(col + shape.offset[i], row + shape.offset[j]);
+      const float r = value - patch.center;
+      float w = shape.spatial[k] * color_weight(fabsf(r));
+      if (shape.ref_has_gaps && value == 0 && patch.center > 0) w = 0;
       patch.weight[k] = w;
       patch.weighted[k] = w * r;
       sum += w;
@@ -93,6 +97,8 @@ HPM_HD RefPatch MakeRefPatch(const PatchShape& shape,
   }
   patch.mean = sum_r * inv_sum;
   patch.variance = sum_rr * inv_sum - patch.mean * patch.mean;
+  // Then nothing matches.
+  if (shape.ref_has_gaps && patch.center == 0) patch.variance = 0;
   return patch;
 }
 
@@ -112,17 +118,29 @@ HPM_HD bool IsVisible(const PatchWarp& warp,
          v <= static_cast<float>(height) - 0.5f;
 }
 
+// Whether the patch's centre lies where the source image shows nothing (then 0
+// stands for that). `sample` as below.
+template <class Sample>
+HPM_HD bool IsInGap(const PatchWarp& warp, const Sample& sample) {
+  const float u = warp.origin.x / warp.origin.z;
+  const float v = warp.origin.y / warp.origin.z;
+  return sample(floorf(u + 0.5f), floorf(v + 0.5f)) < 0.5f;
+}
+
 // `sample(u, v)` returns the bilinearly interpolated source grey value, clamped
-// at the border. Result in [0, kMaxCost].
+// at the border. has_gaps: of the source image. Result in [0, kMaxCost].
 template <class Sample>
 HPM_HD float MatchCost(const PatchShape& shape,
                        const RefPatch& ref,
                        const PatchWarp& warp,
                        const Sample& sample,
                        int width,
-                       int height) {
-  if (ref.variance < kMinVariance || !IsVisible(warp, shape, width, height))
+                       int height,
+                       bool has_gaps = false) {
+  if (ref.variance < kMinVariance || !IsVisible(warp, shape, width, height) ||
+      (has_gaps && IsInGap(warp, sample))) {
     return kMaxCost;
+  }
   float sum_s = 0, sum_ss = 0, sum_rs = 0;
   for (int j = 0; j < kPatchAxis; ++j) {
     for (int i = 0; i < kPatchAxis; ++i) {

@@ -37,6 +37,7 @@ CpuViews::CpuViews(const ViewSet& views, const MethodParams& params)
 
   match_.ref = views.ref.camera;
   match_.shape = ShapeOf(params);
+  match_.shape.ref_has_gaps = ref.has_gaps;
   for (int i = 0; i < 256; ++i) {
     color_weights_[i] = ColorWeight(match_.shape, static_cast<float>(i));
   }
@@ -68,6 +69,8 @@ CpuViews::CpuViews(const ViewSet& views, const MethodParams& params)
     match_.stride[j] = static_cast<int32_t>(sizeof(Texel)) * src.image->width;
     match_.offset[j] = static_cast<int32_t>(
         static_cast<int64_t>(sizeof(Texel) * offset) - kTexelOrigin);
+    match_.has_gaps[j] = src.image->has_gaps;
+    match_.any_has_gaps |= src.image->has_gaps;
     offset += src.image->data.size();
   }
   match_.origin =

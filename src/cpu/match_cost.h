@@ -23,6 +23,8 @@ struct MatchViews {
   alignas(64) float max_v[kMaxViews];     // height - 1
   alignas(64) int32_t stride[kMaxViews];  // bytes from row to row
   alignas(64) int32_t offset[kMaxViews];  // bytes from `origin` to the image
+  int32_t has_gaps[kMaxViews];            // 0 or 1, see src/image/gaps.h
+  bool any_has_gaps = false;
 };
 
 // All planes in all views, at one pixel.

@@ -41,7 +41,8 @@ void ScalarMatchCosts(const MatchViews& match,
                     WarpPatch(warp, slope, col, row),
                     sample,
                     static_cast<int>(match.max_u[view]) + 1,
-                    static_cast<int>(match.max_v[view]) + 1);
+                    static_cast<int>(match.max_v[view]) + 1,
+                    match.has_gaps[view] != 0);
     }
   }
 }

@@ -30,6 +30,7 @@ struct Pairs {
   alignas(64) float max_v[kMaxPairs];
   alignas(64) int32_t stride[kMaxPairs];
   alignas(64) int32_t offset[kMaxPairs];
+  alignas(64) int32_t has_gaps[kMaxPairs];
 };
 
 // Constants of the chosen views, gathered into consecutive lanes.
@@ -102,6 +103,7 @@ HWY_INLINE void FillPairs(const MatchViews& match,
       pairs->max_v[pair] = match.max_v[view];
       pairs->stride[pair] = match.stride[view];
       pairs->offset[pair] = match.offset[view];
+      pairs->has_gaps[pair] = match.has_gaps[view];
     }
   }
   // A vector store past the views of one plane is overwritten by the next
@@ -167,6 +169,22 @@ HWY_INLINE VF PairCosts(D df,
   visible = hn::And(visible,
                     hn::And(hn::Le(u0, hn::Add(max_u, half)),
                             hn::Le(v0, hn::Add(max_v, half))));
+  const int32_t* texels = reinterpret_cast<const int32_t*>(match.origin);
+  if (match.any_has_gaps) {
+    // As IsInGap(): the pixel under the centre of the patch has the value 0.
+    const VF inside_u = hn::Add(hn::IfThenElseZero(visible, u0), half);
+    const VF inside_v = hn::Add(hn::IfThenElseZero(visible, v0), half);
+    const VI iu = Truncate(hn::Min(hn::Max(inside_u, zero), max_u));
+    const VI iv = Truncate(hn::Min(hn::Max(inside_v, zero), max_v));
+    const VI at =
+        hn::Add(hn::Add(hn::Mul(iv, stride), hn::Add(iu, iu)), offset);
+    const VI value =
+        hn::And(hn::GatherOffset(di, texels, at), hn::Set(di, 255));
+    const VI has_gaps = hn::Load(di, pairs.has_gaps + first);
+    const auto shown =
+        hn::Or(hn::Ne(value, hn::Zero(di)), hn::Eq(has_gaps, hn::Zero(di)));
+    visible = hn::And(visible, hn::RebindMask(df, shown));
+  }
   const VF worst = hn::Set(df, kMaxCost);
   if (hn::AllFalse(df, visible)) return worst;
   // Invisible lanes go along on a harmless position.
@@ -184,7 +202,6 @@ HWY_INLINE VF PairCosts(D df,
   const VI second = hn::Add(first_byte, hn::Set(di, 1 - 256));
   const VI third = hn::Add(first_byte, hn::Set(di, 2 - 256));
   const VF center = hn::Set(df, patch.center);
-  const int32_t* texels = reinterpret_cast<const int32_t*>(match.origin);
   VF sum_s = zero, sum_ss = zero, sum_rs = zero;
   // All samples of a row, or of two where vectors are short, go through each
   // step together: while one waits for its last step the others fill the time.
@@ -305,6 +322,7 @@ void MatchCosts(const MatchViews& match,
     pairs.max_u[pair] = pairs.max_v[pair] = 0;
     pairs.stride[pair] = 0;
     pairs.offset[pair] = match.offset[0];
+    pairs.has_gaps[pair] = 0;
   }
   CostsFrom(df, match, patch, pairs, 0, num_pairs, costs);
 }

@@ -35,8 +35,10 @@ struct StageOutput {
   // see SourceDepth: good enough to go on with, not what the whole run gives.
   bool is_complete = true;
   // Of a filtered map, else empty: bit j is set where source j confirms the
-  // pixel, and whether the pixel stays.
+  // pixel.
   std::vector<uint32_t> consistent;
+  // Of a filtered map and one of an image with gaps, else empty: whether the
+  // pixel stays.
   std::vector<bool> keep;
   FilterParams filter = {};          // as it was asked of this problem
   bool filter_is_geometric = false;  // it looked at the sources' depth, too

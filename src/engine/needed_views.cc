@@ -66,6 +66,12 @@ int NeededViews::CountSeeing(size_t at) const {
       continue;
     float u, v;
     if (!IsSeen(warps_[j], slope, x, y, &u, &v)) continue;
+    const GrayImage& image = *src.image;
+    const auto pixel = [](float position, int size) {
+      return std::clamp(static_cast<int>(position + 0.5f), 0, size - 1);
+    };
+    const int col = pixel(u, image.width), row = pixel(v, image.height);
+    if (image.IsGap(static_cast<size_t>(row) * image.width + col)) continue;
     count += !IsHidden(src, u, v, CamFromWorld(src.camera, world).z);
   }
   return count;

@@ -104,6 +104,15 @@ void Filter(const MapFilter& filter,
   }
 }
 
+// No stage keeps what was found where the image shows nothing.
+void DropGaps(const GrayImage& image, std::vector<bool>* keep) {
+  if (!image.has_gaps) return;
+  keep->resize(image.data.size(), true);
+  for (size_t i = 0; i < keep->size(); ++i) {
+    if (image.IsGap(i)) (*keep)[i] = false;
+  }
+}
+
 }  // namespace
 
 void RunStage(const RunSpec& run,
@@ -138,6 +147,7 @@ void RunStage(const RunSpec& run,
   output.is_final = stage + 1 == static_cast<int>(run.schedule.stages.size());
   if (output.is_final && run.filter)
     Filter(*run.filter, spec.geometric, backend, control, &output);
+  DropGaps(*views.ref.image, &output.keep);
   if (!spec.passes.empty()) {
     output.cost_evaluations_per_pixel =
         static_cast<double>(backend->num_cost_evaluations()) /

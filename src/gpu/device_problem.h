@@ -18,7 +18,8 @@ struct alignas(16) ViewGeometry {
   float max_u, max_v;  // width - 1, height - 1
   int32_t width, height;
   const uint32_t* texels;  // four taps per pixel, see texel_image.h; or null
-  uint64_t padding;
+  uint32_t has_gaps;       // see src/image/gaps.h
+  uint32_t padding;
 };
 static_assert(sizeof(ViewGeometry) == 80, "five loads of 16 bytes");
 

@@ -58,6 +58,11 @@ HPM_HD float PairCost(const PatchShape& shape,
        M[4] - slope.row * view.v[1],
        M[7] - slope.row * view.v[2]}};
   if (!IsVisible(warp, shape, view.width, view.height)) return kMaxCost;
+  if (view.has_gaps != 0 && IsInGap(warp, [&](float u, float v) {
+        return sampler(view, layer, u, v);
+      })) {
+    return kMaxCost;
+  }
   float sum_s = 0, sum_ss = 0, sum_rs = 0;
 #if defined(HPM_DEVICE_PASS)
 #pragma unroll kRowsAtOnce

@@ -12,6 +12,7 @@ ProblemTables MakeProblemTables(const ViewSet& views,
   tables.method = params;
   tables.problem.params = tables.visit;
   tables.problem.shape = ShapeOf(params);
+  tables.problem.shape.ref_has_gaps = views.ref.image->has_gaps;
   for (int i = 0; i < 256; ++i) {
     tables.color_weights.push_back(
         ColorWeight(tables.problem.shape, static_cast<float>(i)));
@@ -29,6 +30,7 @@ ProblemTables MakeProblemTables(const ViewSet& views,
     geometry.height = src.image->height;
     geometry.max_u = static_cast<float>(src.image->width - 1);
     geometry.max_v = static_cast<float>(src.image->height - 1);
+    geometry.has_gaps = src.image->has_gaps;
     tables.views.push_back(geometry);
   }
   return tables;

@@ -2,6 +2,7 @@
 
 #include "src/base/error.h"
 #include "src/base/input_file.h"
+#include "src/image/gaps.h"
 #include "src/image/image_integrity.h"
 
 #include <algorithm>
@@ -205,6 +206,41 @@ GrayImage ShrinkToExtent(const GrayImage& gray,
   return result;
 }
 
+// `border`: as BlackBorder() of the picture at the size it was decoded at.
+GrayImage Load(const std::filesystem::path& path,
+               int width,
+               int height,
+               const ImageDecoding& decoding,
+               GrayImage* border) {
+  if (decoding.stretch) {
+    const cv::Mat deep = DecodeDeep(path);
+    GrayImage whole = Stretch(deep, *decoding.stretch);
+    *border = BlackBorder(whole);
+    if (deep.cols == width && deep.rows == height) return whole;
+    cv::Mat resized;
+    cv::resize(deep, resized, {width, height}, 0, 0, cv::INTER_AREA);
+    return Stretch(resized, *decoding.stretch);
+  }
+  const GrayImage gray = ToGray(Decode(path, FlagsFor(decoding.reduction)));
+  *border = BlackBorder(gray);
+  if (decoding.reduction == 1) {
+    if (gray.width == width && gray.height == height) return gray;
+    return Resize(gray, width, height);
+  }
+  const auto extent = [&](int file_side, int decoded_side) {
+    const int rounded_up =
+        (file_side + decoding.reduction - 1) / decoding.reduction;
+    return rounded_up == decoded_side
+               ? file_side / static_cast<double>(decoding.reduction)
+               : decoded_side;  // another file than was asked for
+  };
+  return ShrinkToExtent(gray,
+                        extent(decoding.file_width, gray.width),
+                        extent(decoding.file_height, gray.height),
+                        width,
+                        height);
+}
+
 }  // namespace
 
 int ReductionFor(int file_width, int file_height, int width, int height) {
@@ -225,31 +261,19 @@ GrayImage LoadGrayImage(const std::filesystem::path& path,
                         int width,
                         int height,
                         const ImageDecoding& decoding) {
-  if (decoding.stretch) {
-    const cv::Mat deep = DecodeDeep(path);
-    if (deep.cols == width && deep.rows == height)
-      return Stretch(deep, *decoding.stretch);
-    cv::Mat resized;
-    cv::resize(deep, resized, {width, height}, 0, 0, cv::INTER_AREA);
-    return Stretch(resized, *decoding.stretch);
+  GrayImage border;
+  GrayImage image = Load(path, width, height, decoding, &border);
+  if (!border.data.empty())
+    ApplyMask(ResizedMask(border, width, height), &image);
+  if (decoding.mask.empty()) return image;
+  GrayImage mask = ResizedMask(LoadMask(decoding.mask), width, height);
+  if (image.has_gaps) {
+    for (size_t i = 0; i < mask.data.size(); ++i) {
+      if (image.IsGap(i)) mask.data[i] = 0;
+    }
   }
-  const GrayImage gray = ToGray(Decode(path, FlagsFor(decoding.reduction)));
-  if (decoding.reduction == 1) {
-    if (gray.width == width && gray.height == height) return gray;
-    return Resize(gray, width, height);
-  }
-  const auto extent = [&](int file_side, int decoded_side) {
-    const int rounded_up =
-        (file_side + decoding.reduction - 1) / decoding.reduction;
-    return rounded_up == decoded_side
-               ? file_side / static_cast<double>(decoding.reduction)
-               : decoded_side;  // another file than was asked for
-  };
-  return ShrinkToExtent(gray,
-                        extent(decoding.file_width, gray.width),
-                        extent(decoding.file_height, gray.height),
-                        width,
-                        height);
+  ApplyMask(mask, &image);
+  return image;
 }
 
 std::optional<GreyRange> MeasureGreyRange(const std::filesystem::path& path) {

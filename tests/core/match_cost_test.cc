@@ -181,6 +181,51 @@ TEST(MatchCost, AgreesWithTheTextbookFormula) {
       1e-4);
 }
 
+TEST(MatchCost, NothingMatchesWhereTheSourceShowsNothing) {
+  const PatchShape shape = DefaultShape();
+  const RefPatch ref = PatchOf(shape, Pattern, 30, 20);
+  // All that is left of column 29.5 is a gap.
+  const auto sample = [](float u, float v) {
+    return u < 29.5f ? 0.0f : Pattern(u, v);
+  };
+  const auto cost = [&](float u, bool has_gaps) {
+    return MatchCost(
+        shape, ref, Shift(u, 20), sample, kWidth, kHeight, has_gaps);
+  };
+  EXPECT_EQ(cost(29.4f, true), kMaxCost);
+  EXPECT_LT(cost(29.4f, false), kMaxCost);
+  EXPECT_LT(cost(29.6f, true), kMaxCost);
+  EXPECT_EQ(cost(29.6f, true), cost(29.6f, false));
+}
+
+TEST(MatchCost, ReferencePixelsThatShowNothingDoNotCount) {
+  PatchShape shape = DefaultShape();
+  shape.ref_has_gaps = true;
+  const auto with_gap = [](float value) {
+    return
+        [value](float u, float v) { return u < 29.5f ? value : Pattern(u, v); };
+  };
+  const RefPatch ref = PatchOf(shape, with_gap(0), 30, 20);
+  float sum = 0;
+  for (int k = 0; k < kPatchSize; ++k) {
+    if (shape.offset[k % kPatchAxis] < 0) {
+      EXPECT_EQ(ref.weight[k], 0);
+    }
+    sum += ref.weight[k];
+  }
+  EXPECT_NEAR(sum, 1, 1e-5);
+  // Whatever the source shows there.
+  EXPECT_LT(MatchCost(shape, ref, Shift(30, 20), Pattern, kWidth, kHeight),
+            1e-4);
+  // Nothing matches a gap itself.
+  const RefPatch gap = PatchOf(shape, with_gap(0), 27, 20);
+  EXPECT_EQ(MatchCost(shape, gap, Shift(27, 20), Pattern, kWidth, kHeight),
+            kMaxCost);
+  // Without gaps black is a value like others.
+  shape.ref_has_gaps = false;
+  EXPECT_GT(PatchOf(shape, with_gap(0), 27, 20).variance, kMinVariance);
+}
+
 TEST(MatchCost, CentreOutsideTheSourceImageCostsTwo) {
   const PatchShape shape = DefaultShape();
   const RefPatch ref = PatchOf(shape, Pattern, 30, 20);

@@ -102,6 +102,40 @@ TEST_P(EveryTarget, AgreesWithTheScalarCostOnRenderedScenes) {
   ExpectAgreement(result);
 }
 
+// Half of the views have gaps, half have none but black pixels.
+TEST_P(EveryTarget, AgreesOnWhatIsMasked) {
+  const std::vector<RenderedView> rendered =
+      RenderViews(MakeScene("sphere", Options(8)), 1);
+  ViewSet set = AsViewSet(rendered);
+  const CpuViews without(set, MethodParams());
+  set.ref = WithGap(set.ref, 10);
+  for (size_t j = 0; j < set.srcs.size(); ++j) {
+    GrayImage image = *WithGap(set.srcs[j], 30).image;
+    image.has_gaps = j % 2 == 0;
+    set.srcs[j].image = std::make_shared<const GrayImage>(image);
+  }
+  const CpuViews cpu_views(set, MethodParams());
+  Comparison result, unmasked;
+  std::mt19937 random(1);
+  for (int row = 0; row < 44; row += 3) {
+    for (int col = 0; col < 60; col += 3) {
+      std::vector<Plane> planes;
+      for (int i = 0; i < 5; ++i)
+        planes.push_back(SomeHypothesis(rendered[0], col, row, &random));
+      for (const uint8_t view : {0, 1, 2, 3, 4, 5, 6})
+        Compare(GetParam(), cpu_views, col, row, planes, {view}, &result);
+      const std::vector<uint8_t> views = {0, 1, 2, 3, 4, 5, 6};
+      Compare(GetParam(), cpu_views, col, row, planes, views, &result);
+      Compare(GetParam(), without, col, row, planes, views, &unmasked);
+    }
+  }
+  EXPECT_GT(result.num_visible, 3000);
+  EXPECT_LT(result.num_visible, unmasked.num_visible * 2 * 9 / 10);
+  EXPECT_LT(result.largest, kTolerance);
+  // A centre exactly between a gap and a pixel may fall on either side.
+  EXPECT_LE(result.num_visibility_differs, result.num_pairs / 1000);
+}
+
 // Any number of planes and of views, so that vectors are filled in every way,
 // and views in any order.
 TEST_P(EveryTarget, AgreesForEveryNumberOfPlanesAndViews) {

@@ -34,6 +34,21 @@ inline ViewSet AsViewSet(const std::vector<RenderedView>& views) {
   return set;
 }
 
+// The view with what lies left of `col` masked.
+inline View WithGap(const View& view, int col) {
+  View masked = view;
+  GrayImage image = *view.image;
+  image.has_gaps = true;
+  for (int row = 0; row < image.height; ++row) {
+    for (int c = 0; c < image.width; ++c) {
+      uint8_t& value = image.data[static_cast<size_t>(row) * image.width + c];
+      value = c < col ? 0 : std::max<uint8_t>(value, 1);
+    }
+  }
+  masked.image = std::make_shared<const GrayImage>(std::move(image));
+  return masked;
+}
+
 // The part of a view from (col, row) on, as a camera of its own.
 inline View Cropped(const View& view, int col, int row, int width, int height) {
   View part = view;

@@ -34,7 +34,8 @@ class CoreCost : public PixelCost {
                       static_cast<float>(row_)),
             [&](float u, float v) { return sampler(view, views[k], u, v); },
             view.width,
-            view.height);
+            view.height,
+            view.has_gaps != 0);
       }
     }
     num_evaluations_ += num_planes * num_views;

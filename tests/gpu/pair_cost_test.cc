@@ -19,7 +19,7 @@ struct Difference {
 };
 
 template <class Sampler>
-Difference Compare(const std::string& scene) {
+Difference Compare(const std::string& scene, bool masked = false) {
   SceneOptions options;
   options.num_views = 6;
   options.width = 60;
@@ -27,7 +27,12 @@ Difference Compare(const std::string& scene) {
   options.quarter_turns = {0, 0, 1, 2, 0, 3};
   const auto rendered = RenderViews(MakeScene(scene, options), 1);
   EmulatedBackend backend({});
-  backend.SetViews(AsViewSet(rendered), MethodParams());
+  ViewSet set = AsViewSet(rendered);
+  if (masked) {
+    set.ref = WithGap(set.ref, 10);
+    for (View& src : set.srcs) src = WithGap(src, 30);
+  }
+  backend.SetViews(set, MethodParams());
   const DeviceProblem& problem = backend.problem();
   std::mt19937 random(1);
   Difference result;
@@ -79,6 +84,17 @@ TEST_P(EveryScene, ExactInterpolationGivesTheCostOfTheCore) {
   EXPECT_GT(d.num_visible, 3000);
   EXPECT_LT(d.largest, 1e-2f);
   EXPECT_LE(d.num_visibility_differs, d.num_pairs / 2000);
+}
+
+TEST(PairCost, MaskedPixelsAreNotMatched) {
+  const Difference all = Compare<QuadSampler>("sphere");
+  const Difference quad = Compare<QuadSampler>("sphere", true);
+  const Difference texture = Compare<TextureSampler>("sphere", true);
+  EXPECT_GT(quad.num_visible, 500);
+  EXPECT_LT(quad.num_visible, all.num_visible * 3 / 4);
+  EXPECT_LT(quad.largest, 1e-2f);
+  EXPECT_LE(quad.num_visibility_differs, quad.num_pairs / 1000);
+  EXPECT_LE(texture.num_visibility_differs, texture.num_pairs / 1000);
 }
 
 // Fractions of 1/256 pixel: the mean tells what it costs, the largest value

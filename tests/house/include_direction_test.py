@@ -20,6 +20,7 @@ FORMATS = BACKENDS + ("colmap_plugin/formats",)
 WORKSPACE = FORMATS + ("colmap_plugin/workspace",)
 OPTIONS = WORKSPACE + ("colmap_plugin/options",)
 CONTROLLER = OPTIONS + ("colmap_plugin/controller",)
+INSPECT = CONTROLLER + ("colmap_plugin/inspect",)
 EVERYTHING = OUR_FOLDERS
 
 # Module -> what it may include, besides itself.
@@ -36,8 +37,9 @@ ALLOWED = {
     "colmap_plugin/workspace": FORMATS,
     "colmap_plugin/options": WORKSPACE,
     "colmap_plugin/controller": OPTIONS,
-    "colmap_plugin/tool": CONTROLLER,
-    "colmap_plugin/in_colmap": CONTROLLER + ("colmap_plugin/tool",),
+    "colmap_plugin/inspect": CONTROLLER,
+    "colmap_plugin/tool": INSPECT,
+    "colmap_plugin/in_colmap": INSPECT + ("colmap_plugin/tool",),
     "colmap_plugin/wrapper": BASE,
     "bench": EVERYTHING,
     "examples": LIBRARY + ("src/cpu",),

@@ -55,8 +55,11 @@ Words AnotherValue(const OptionSpec& option) {
 }
 
 bool IsGivenByTheTest(const OptionSpec& option) {
-  const std::set<std::string> names = {
-      "workspace_path", "config_path", "project_path", "workspace_format"};
+  const std::set<std::string> names = {"workspace_path",
+                                       "config_path",
+                                       "project_path",
+                                       "workspace_format",
+                                       "Hpm.mask_path"};
   return names.count(option.name) > 0;
 }
 

@@ -35,7 +35,14 @@ class CommandTest : public testing::Test {
                       log(LogLevel::kInfo, "Reading workspace...");
                       if (action_) action_();
                       return summary_;
-                    }});
+                    },
+                    {{"check", [this](const CommandCall& call) {
+                        options_ = call.options;
+                        own_ = call.own;
+                        ++num_runs_;
+                        if (action_) action_();
+                        return call.print("one finding\n");
+                      }}}});
   }
 
   int RunThrowing(std::function<void()> action) {
@@ -47,6 +54,7 @@ class CommandTest : public testing::Test {
   std::function<void()> action_;
   RunSummary summary_;
   ControllerOptions options_;
+  CommandOptions own_;
   int num_runs_ = 0;
   std::ostringstream out_;
   std::ostringstream err_;
@@ -84,8 +92,10 @@ TEST_F(CommandTest, UnknownCommandReturnsTwoWithTheList) {
   EXPECT_EQ(Run({"stereo_fusion", "--workspace_path", "w"}), 2);
   EXPECT_EQ(num_runs_, 0);
   EXPECT_EQ(err_.str(),
-            "ERROR: unknown command 'stereo_fusion'; commands: "
-            "patch_match_stereo, help, version\n");
+            "ERROR: unknown command 'stereo_fusion'; commands: " +
+                CommandNames(", ") + "\n");
+  EXPECT_THAT(err_.str(), HasSubstr("patch_match_stereo, "));
+  EXPECT_EQ(Run({"help", "stereo_fusion"}), 2);
 }
 
 TEST_F(CommandTest, HelpAndVersionGoToStandardOutput) {
@@ -110,6 +120,64 @@ TEST_F(CommandTest, HelpAndVersionGoToStandardOutput) {
   EXPECT_EQ(out_.str(), OptionsMarkdown());
   EXPECT_THAT(err_.str(), IsEmpty());
   EXPECT_EQ(num_runs_, 0);
+}
+
+TEST_F(CommandTest, OtherCommandsTakeTheirOwnOptionsAndThoseOfARun) {
+  EXPECT_EQ(Run({"check",
+                 "--workspace_path=w",
+                 "--fix",
+                 "Yes",
+                 "--PatchMatchStereo.max_image_size",
+                 "100"}),
+            0);
+  EXPECT_EQ(num_runs_, 1);
+  EXPECT_TRUE(own_.fix);
+  EXPECT_EQ(options_.workspace.path, "w");
+  EXPECT_EQ(options_.patch_match.max_image_size, 100);
+  EXPECT_EQ(out_.str(), "one finding\n");
+  // A unique beginning is enough.
+  EXPECT_EQ(Run({"check", "--workspace_pa=v", "--fi=0"}), 0);
+  EXPECT_FALSE(own_.fix);
+  EXPECT_EQ(options_.workspace.path, "v");
+  EXPECT_EQ(err_.str(), "");
+}
+
+TEST_F(CommandTest, OtherCommandsNameAllProblemsOfTheirOptions) {
+  EXPECT_EQ(Run({"check",
+                 "--fix=maybe",
+                 "--fix=1",
+                 "--Hpm.method=magic",
+                 "--depth=2",
+                 "--fix"}),
+            2);
+  EXPECT_EQ(num_runs_, 0);
+  EXPECT_THAT(err_.str(),
+              AllOf(HasSubstr("--fix 'maybe' is not allowed"),
+                    HasSubstr("--fix is given twice"),
+                    HasSubstr("--fix has no value"),
+                    HasSubstr("--Hpm.method 'magic'"),
+                    HasSubstr("'--depth=2'"),
+                    HasSubstr("'--workspace_path' is required")));
+}
+
+TEST_F(CommandTest, OtherCommandsHaveTheirOwnHelp) {
+  for (const std::vector<std::string>& arguments :
+       std::vector<std::vector<std::string>>{
+           {"help", "check"}, {"check", "--help"}, {"check", "-h"}}) {
+    out_.str("");
+    EXPECT_EQ(Run(arguments), 0);
+    EXPECT_EQ(out_.str(), CommandHelp(*FindCommand("check")));
+  }
+  out_.str("");
+  EXPECT_EQ(Run({"help", "patch_match_stereo"}), 0);
+  EXPECT_EQ(out_.str(), HelpText());
+  EXPECT_EQ(num_runs_, 0);
+}
+
+TEST_F(CommandTest, ErrorsOfOtherCommandsAreExitCodesToo) {
+  action_ = [] { throw Error(ErrorCode::kBadInput, "x.bin: bad"); };
+  EXPECT_EQ(Run({"check", "--workspace_path", "w"}), 3);
+  EXPECT_EQ(err_.str(), "ERROR: x.bin: bad\n");
 }
 
 TEST_F(CommandTest, FailedImagesReturnFourAndAreNamed) {

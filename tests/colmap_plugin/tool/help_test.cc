@@ -1,6 +1,7 @@
 #include "colmap_plugin/tool/help.h"
 
 #include "colmap_plugin/options/option_table.h"
+#include "colmap_plugin/tool/command_table.h"
 #include "colmap_plugin/tool/completion.h"
 #include "colmap_plugin/tool/man_page.h"
 
@@ -60,6 +61,26 @@ TEST(HelpTest, ManualPageAndCompletionKnowEveryOption) {
     EXPECT_THAT(completion, HasSubstr(" --" + option.name));
     EXPECT_THAT(completion, HasSubstr("\n    --" + option.name + ") "));
   }
+}
+
+TEST(HelpTest, EveryCommandIsInHelpManualCompletionAndDocument) {
+  for (const Command& command : CommandTable()) {
+    EXPECT_THAT(HelpText(), HasSubstr("\n  " + command.name + "\n"));
+    EXPECT_THAT(ManPage(), HasSubstr("\n.B " + command.name + "\n"));
+    if (command.description.empty()) continue;
+    EXPECT_THAT(OptionsMarkdown(),
+                HasSubstr("\n## `hpm_mvs " + command.name + "`\n"));
+    EXPECT_THAT(BashCompletion(), HasSubstr("\n    " + command.name + ") "));
+    const std::string help = CommandHelp(command);
+    EXPECT_THAT(help, HasSubstr("--workspace_path arg"));
+    EXPECT_THAT(help, HasSubstr("Exit codes: 0 "));
+    for (const CommandOption& option : command.options) {
+      EXPECT_THAT(help, HasSubstr("  --" + option.name + " arg"));
+      EXPECT_THAT(OptionsMarkdown(), HasSubstr("\n| `" + option.name + "` | "));
+      EXPECT_THAT(BashCompletion(), HasSubstr("\n    --" + option.name + ") "));
+    }
+  }
+  EXPECT_THAT(BashCompletion(), HasSubstr("\"" + CommandNames(" ") + "\""));
 }
 
 }  // namespace

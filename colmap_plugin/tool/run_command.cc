@@ -1,6 +1,7 @@
-#include "colmap_plugin/tool/cmd_patch_match_stereo.h"
+#include "colmap_plugin/tool/run_command.h"
 
 #include "colmap_plugin/tool/help.h"
+#include "colmap_plugin/tool/parse_command.h"
 #include "colmap_plugin/tool/parse_options.h"
 #include "colmap_plugin/tool/run_summary.h"
 #include "src/base/error.h"
@@ -55,19 +56,11 @@ int RunAndReport(const ControllerOptions& options,
   return ExitCode(ErrorCode::kPartial);
 }
 
-}  // namespace
-
-int Print(const std::string& text, const ToolEnvironment& tool) {
-  errno = 0;
-  if (*tool.out << text << std::flush) return 0;
-  if (errno == EPIPE) return 0;  // `| head -1` has seen enough
-  *tool.err << "ERROR: standard output cannot be written; check where it goes\n"
-            << std::flush;
-  return ExitCode(ErrorCode::kFailure);
-}
-
-int RunPatchMatchStereo(const std::vector<std::string>& arguments,
-                        const ToolEnvironment& tool) {
+// Says what is wrong with the options, or does the work and says what went
+// wrong there.
+int Guarded(const ToolEnvironment& tool,
+            const ParsedOptions& parsed,
+            const std::function<int(ProgressLine*)>& work) {
   ProgressLine progress(
       tool.out, tool.err, tool.terminal, tool.columns, tool.clock);
   const auto fail = [&progress](ErrorCode code, const std::string& message) {
@@ -76,17 +69,10 @@ int RunPatchMatchStereo(const std::vector<std::string>& arguments,
     return ExitCode(code);
   };
   try {
-    const ParsedOptions parsed = ParseOptions(arguments);
-    if (parsed.help) {
-      return Print(HelpText(), tool);
-    }
     for (const std::string& problem : parsed.problems)
       progress.Log(LogLevel::kError, problem);
     if (!parsed.problems.empty()) return ExitCode(ErrorCode::kUsage);
-    progress.Log(LogLevel::kInfo, VersionLine());
-    for (const std::string& note : parsed.notes)
-      progress.Log(LogLevel::kWarning, note);
-    return RunAndReport(parsed.options.controller, tool, &progress);
+    return work(&progress);
   } catch (const Error& error) {
     if (error.code() == ErrorCode::kInterrupted) {
       return fail(error.code(),
@@ -100,6 +86,47 @@ int RunPatchMatchStereo(const std::vector<std::string>& arguments,
   } catch (const std::exception& error) {
     return fail(ErrorCode::kFailure, error.what());
   }
+}
+
+}  // namespace
+
+int Print(const std::string& text, const ToolEnvironment& tool) {
+  errno = 0;
+  if (*tool.out << text << std::flush) return 0;
+  if (errno == EPIPE) return 0;  // `| head -1` has seen enough
+  *tool.err << "ERROR: standard output cannot be written; check where it goes\n"
+            << std::flush;
+  return ExitCode(ErrorCode::kFailure);
+}
+
+int RunPatchMatchStereo(const std::vector<std::string>& arguments,
+                        const ToolEnvironment& tool) {
+  const ParsedOptions parsed = ParseOptions(arguments);
+  if (parsed.help) return Print(HelpText(), tool);
+  return Guarded(tool, parsed, [&](ProgressLine* progress) {
+    progress->Log(LogLevel::kInfo, VersionLine());
+    for (const std::string& note : parsed.notes)
+      progress->Log(LogLevel::kWarning, note);
+    return RunAndReport(parsed.options.controller, tool, progress);
+  });
+}
+
+int RunCommand(const Command& command,
+               const std::vector<std::string>& arguments,
+               const ToolEnvironment& tool) {
+  const ParsedCommand parsed = ParseCommand(command, arguments);
+  if (parsed.run.help) return Print(CommandHelp(command), tool);
+  return Guarded(tool, parsed.run, [&](ProgressLine* progress) {
+    const CommandCall call = {
+        parsed.run.options.controller,
+        parsed.own,
+        [progress](LogLevel level, const std::string& message) {
+          progress->Log(level, message);
+        },
+        [&tool](const std::string& text) { return Print(text, tool); },
+        tool.cancel};
+    return tool.commands.at(command.name)(call);
+  });
 }
 
 }  // namespace hpm

@@ -1,0 +1,31 @@
+#include "colmap_plugin/controller/run_setup.h"
+
+#include "colmap_plugin/workspace/source_problems.h"
+#include "src/engine/method.h"
+#include "src/engine/schedule.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace hpm {
+
+void AddSourceProblems(const Workspace& workspace,
+                       const ProblemOptions& options,
+                       std::vector<StereoProblem>* problems) {
+  for (StereoProblem& problem : SourceProblems(workspace, *problems, options))
+    problems->push_back(std::move(problem));
+}
+
+void SetLevels(const Workspace& workspace, ControllerOptions* options) {
+  if (options->hpm.num_levels > 0) return;
+  int side = 1;
+  for (int image = 0; image < workspace.num_images(); ++image) {
+    if (!workspace.usable(image)) continue;
+    const Camera& camera = workspace.camera(image);
+    side = std::max({side, camera.width, camera.height});
+  }
+  options->hpm.num_levels =
+      AutomaticLevels(FindMethod(options->hpm.method), side);
+}
+
+}  // namespace hpm

@@ -1,0 +1,22 @@
+// From options and workspace to the problems and levels of a run: for the run
+// itself, and for all who want to know what it would do.
+#pragma once
+
+#include "colmap_plugin/options/options.h"
+#include "colmap_plugin/workspace/problem.h"
+
+#include <vector>
+
+namespace hpm {
+
+// Problems of images that are only sources, behind the references.
+void AddSourceProblems(const Workspace& workspace,
+                       const ProblemOptions& options,
+                       std::vector<StereoProblem>* problems);
+
+// --Hpm.num_levels, where the user leaves it to the method. The largest image
+// of the workspace decides for all, so that all have the same stages, whichever
+// of them a run computes.
+void SetLevels(const Workspace& workspace, ControllerOptions* options);
+
+}  // namespace hpm

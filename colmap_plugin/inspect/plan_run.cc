@@ -1,0 +1,225 @@
+#include "colmap_plugin/inspect/plan_run.h"
+
+#include "colmap_plugin/controller/run_budget.h"
+#include "colmap_plugin/controller/run_resources.h"
+#include "colmap_plugin/controller/thread_supply.h"
+#include "colmap_plugin/inspect/planned_run.h"
+#include "colmap_plugin/inspect/sample_run.h"
+#include "colmap_plugin/workspace/far_origin.h"
+#include "colmap_plugin/workspace/output_check.h"
+#include "colmap_plugin/workspace/run_lock.h"
+#include "src/cpu/cpu_target.h"
+#include "src/engine/memory_plan.h"
+
+#include <algorithm>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace hpm {
+namespace {
+
+std::string Gigabytes(uint64_t bytes) {
+  return fmt::format("{:.1f} GiB", static_cast<double>(bytes) / (1 << 30));
+}
+
+std::string Duration(double seconds) {
+  if (seconds < 90) return fmt::format("{:.0f} s", seconds);
+  if (seconds < 90 * 60) return fmt::format("{:.0f} min", seconds / 60);
+  return fmt::format("{:.1f} h", seconds / 3600);
+}
+
+class Planner {
+ public:
+  Planner(const ControllerOptions& options,
+          double sample_seconds,
+          const LogSink& log,
+          const CancelToken& cancel)
+      : options_(options),
+        sample_seconds_(sample_seconds),
+        log_(log),
+        cancel_(cancel) {}
+
+  RunPlan Run() {
+    std::optional<ThreadSupply> threads;
+    Attempt([&] { threads.emplace(options_.patch_match.num_threads, log_); });
+    std::optional<CpuTarget> target;
+    Attempt([&] { target = FindCpuTarget(options_.hpm.cpu_target); });
+    const bool is_read = Attempt(
+        [&] { run_ = std::make_unique<PlannedRun>(options_, log_, cancel_); });
+    if (!is_read) return std::move(plan_);
+    CancelToken stop(&cancel_);
+    std::optional<RunLock> lock;
+    Attempt([&] { lock.emplace(run_->workspace().StatePath(), log_, &stop); });
+    const bool is_planned =
+        Attempt([&] { run_->Plan(/*look_at_maps=*/true, log_); });
+    if (!is_planned) return std::move(plan_);
+    WarnOfFarOrigin(run_->workspace(), run_->problems(), log_);
+    SayImages();
+    SaySizes();
+    SayDisk();
+    if (threads && target) SayMemory(*target, threads->num_threads());
+    lock.reset();
+    if (plan_.problems.empty()) SayTime();
+    return std::move(plan_);
+  }
+
+ private:
+  bool Attempt(const std::function<void()>& action) {
+    try {
+      action();
+      return true;
+    } catch (const Error& error) {
+      if (error.code() == ErrorCode::kInterrupted) throw;
+      plan_.problems.push_back(error.what());
+      if (plan_.exit_code == 0)
+        plan_.exit_code = static_cast<int>(error.code());
+      return false;
+    }
+  }
+
+  template <class... T>
+  void Say(fmt::format_string<T...> format, T&&... values) {
+    plan_.lines.push_back(fmt::format(format, std::forward<T>(values)...));
+  }
+
+  void SayImages() {
+    const std::vector<StereoProblem>& problems = run_->problems();
+    const int num_references = run_->num_references();
+    const int last = static_cast<int>(run_->plan().stages().size()) - 1;
+    std::vector<size_t> sources;
+    std::vector<std::string> failing;
+    int num_kept = 0;
+    for (int p = 0; p < num_references; ++p) {
+      sources.push_back(problems[p].src_images.size());
+      if (!CanBeComputed(run_->workspace(), problems[p])) {
+        failing.push_back(run_->workspace().ImageName(problems[p].ref_image));
+        continue;
+      }
+      bool is_needed = false;
+      for (int s = 0; s <= last; ++s) is_needed |= run_->plan().IsNeeded(s, p);
+      num_kept += !is_needed;
+    }
+    std::sort(sources.begin(), sources.end());
+    Say("Images: {} to compute, {} kept from an earlier run, {} cannot be "
+        "computed",
+        num_references - num_kept - static_cast<int>(failing.size()),
+        num_kept,
+        failing.size());
+    if (problems.size() > static_cast<size_t>(num_references)) {
+      Say("Further images, as they are sources of these: {}",
+          problems.size() - num_references);
+    }
+    Say("Sources per image: {} to {}, median {}",
+        sources.front(),
+        sources.back(),
+        sources[sources.size() / 2]);
+    if (failing.empty()) return;
+    plan_.problems.push_back(fmt::format(
+        "{} of {} images would fail, the first: {}; the others would be "
+        "computed",
+        failing.size(),
+        num_references,
+        failing.front()));
+    if (plan_.exit_code == 0)
+      plan_.exit_code = static_cast<int>(ErrorCode::kPartial);
+  }
+
+  void SaySizes() {
+    std::map<std::pair<int, int>, int> sizes;
+    for (int p = 0; p < run_->num_references(); ++p) {
+      const Camera& camera =
+          run_->workspace().camera(run_->problems()[p].ref_image);
+      ++sizes[{camera.width, camera.height}];
+    }
+    const auto most = std::max_element(
+        sizes.begin(), sizes.end(), [](const auto& a, const auto& b) {
+          return a.second < b.second;
+        });
+    Say("Working size: {}x{}{}; {} levels, {} stages",
+        most->first.first,
+        most->first.second,
+        sizes.size() > 1 ? fmt::format(" of {} images, {} other sizes",
+                                       most->second,
+                                       sizes.size() - 1)
+                         : "",
+        run_->options().hpm.num_levels,
+        run_->plan().stages().size());
+  }
+
+  void SayDisk() {
+    const uint64_t bytes = BytesToWrite(run_->problems(), run_->plan());
+    const bool can_write = Attempt(
+        [&] { CheckOutputs(run_->workspace(), run_->problems(), bytes); });
+    const std::optional<uint64_t> num_free =
+        can_write ? FreeBytes(run_->workspace().StatePath()) : std::nullopt;
+    Say("Disk: {} to write{}",
+        Gigabytes(bytes),
+        num_free ? ", " + Gigabytes(*num_free) + " free" : "");
+  }
+
+  // What the run says of it itself.
+  void SayMemory(const CpuTarget& target, int num_threads) {
+    const LogSink say = [this](LogLevel level, const std::string& line) {
+      if (level == LogLevel::kInfo) {
+        plan_.lines.push_back("Computed on: " + line);
+      } else {
+        log_(level, line);
+      }
+    };
+    Attempt([&] {
+      OpenResources(run_->workspace(),
+                    run_->problems(),
+                    run_->options(),
+                    target,
+                    num_threads,
+                    say);
+    });
+    Say("Memory that may be used: {}", Gigabytes(MemoryLimit()));
+  }
+
+  void SayTime() {
+    const double work = run_->Work();
+    if (work == 0) {
+      Say("Time: nothing is left to compute");
+      return;
+    }
+    if (sample_seconds_ <= 0) return;
+    log_(LogLevel::kInfo,
+         fmt::format("Measuring how fast this machine is, about {}...",
+                     Duration(sample_seconds_)));
+    const std::optional<Sample> sample =
+        MeasureSample(*run_, sample_seconds_, cancel_);
+    if (!sample) {
+      Say("Time: could not be measured");
+      return;
+    }
+    Say("Time: about {}, from {:.1f} s of {} at {} pixels",
+        Duration(work / sample->work_per_second),
+        sample->seconds,
+        sample->image,
+        sample->max_image_size);
+  }
+
+  const ControllerOptions& options_;
+  const double sample_seconds_;
+  const LogSink& log_;
+  const CancelToken& cancel_;
+  std::unique_ptr<PlannedRun> run_;
+  RunPlan plan_;
+};
+
+}  // namespace
+
+RunPlan PlanRun(const ControllerOptions& options,
+                double sample_seconds,
+                const LogSink& log,
+                const CancelToken& cancel) {
+  return Planner(options, sample_seconds, log, cancel).Run();
+}
+
+}  // namespace hpm

@@ -1,0 +1,51 @@
+#include "colmap_plugin/inspect/planned_run.h"
+
+#include "colmap_plugin/controller/deep_images.h"
+#include "colmap_plugin/controller/run_setup.h"
+#include "colmap_plugin/options/method_options.h"
+
+namespace hpm {
+PlannedRun::PlannedRun(const ControllerOptions& options,
+                       const LogSink& log,
+                       const CancelToken& cancel)
+    : options_(options),
+      cancel_(cancel),
+      workspace_(options_.workspace, log),
+      contents_(workspace_) {
+  SetLevels(workspace_, &options_);
+}
+
+void PlannedRun::Plan(bool look_at_maps, const LogSink& log) {
+  workspace_.StretchDeepImages(
+      FindDeepRange(workspace_, &contents_, log, cancel_));
+  const ProblemOptions& problem_options = options_.problems;
+  problems_ = ReadProblems(workspace_, problem_options, log);
+  num_references_ = static_cast<int>(problems_.size());
+  if (options_.patch_match.geom_consistency)
+    AddSourceProblems(workspace_, problem_options, &problems_);
+  options_.hpm.overwrite |= !look_at_maps;
+  plan_ =
+      std::make_unique<StagePlan>(workspace_,
+                                  problems_,
+                                  MakeSchedule(MakeScheduleOptions(options_)),
+                                  options_,
+                                  &contents_,
+                                  cancel_);
+}
+
+double PlannedRun::Work() const {
+  double work = 0;
+  for (int s = 0; s < static_cast<int>(plan_->stages().size()); ++s) {
+    int iterations = 0;
+    for (const Pass& pass : plan_->stages()[s].spec.passes)
+      iterations += pass.num_iterations;
+    for (int p = 0; p < static_cast<int>(problems_.size()); ++p) {
+      if (!plan_->IsNeeded(s, p)) continue;
+      const Camera camera = plan_->CameraOf(s, problems_[p].ref_image);
+      work += static_cast<double>(iterations) * camera.width * camera.height;
+    }
+  }
+  return work;
+}
+
+}  // namespace hpm

@@ -1,0 +1,120 @@
+#include "src/image/gaps.h"
+
+#include "src/base/error.h"
+#include "src/image/load_image.h"
+#include "src/image/shrink_image.h"
+#include "tests/base/scratch_folder.h"
+
+#include <algorithm>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <opencv2/imgcodecs.hpp>
+
+namespace hpm {
+namespace {
+
+using testing::ElementsAre;
+
+GrayImage Filled(int width, int height, uint8_t value) {
+  return {width,
+          height,
+          std::vector<uint8_t>(static_cast<size_t>(width) * height, value)};
+}
+
+void Fill(GrayImage* image, int left, int top, int right, int bottom) {
+  for (int row = top; row < bottom; ++row) {
+    for (int col = left; col < right; ++col)
+      image->data[static_cast<size_t>(row) * image->width + col] = 0;
+  }
+}
+
+TEST(Gaps, MaskedPixelsBecomeZeroAndNoOtherOneIs) {
+  GrayImage image{4, 1, {0, 5, 0, 255}};
+  ApplyMask({4, 1, {255, 0, 0, 1}}, &image);
+  EXPECT_TRUE(image.has_gaps);
+  EXPECT_THAT(image.data, ElementsAre(1, 0, 0, 255));
+  EXPECT_FALSE(image.IsGap(0));
+  EXPECT_TRUE(image.IsGap(1));
+}
+
+TEST(Gaps, AMaskWithoutAMaskedPixelChangesNothing) {
+  GrayImage image{4, 1, {0, 5, 0, 255}};
+  ApplyMask({4, 1, {255, 255, 1, 255}}, &image);
+  EXPECT_FALSE(image.has_gaps);
+  EXPECT_THAT(image.data, ElementsAre(0, 5, 0, 255));
+  EXPECT_FALSE(image.IsGap(0));
+}
+
+TEST(Gaps, BlackBordersAreFoundAndDarkThingsInsideAreNot) {
+  GrayImage image = Filled(60, 40, 9);
+  Fill(&image, 0, 0, 60, 5);     // a bar
+  Fill(&image, 30, 20, 50, 30);  // inside
+  const GrayImage border = BlackBorder(image);
+  ASSERT_EQ(border.data.size(), image.data.size());
+  for (int row = 0; row < 40; ++row) {
+    for (int col = 0; col < 60; ++col)
+      EXPECT_EQ(border.at(col, row) == 0, row < 5);
+  }
+}
+
+TEST(Gaps, FewBlackPixelsAtTheBorderAreNone) {
+  GrayImage image = Filled(100, 100, 9);
+  Fill(&image, 10, 0, 20, 1);
+  EXPECT_TRUE(BlackBorder(image).data.empty());
+  Fill(&image, 10, 0, 20, 2);
+  EXPECT_FALSE(BlackBorder(image).data.empty());
+  EXPECT_TRUE(BlackBorder(Filled(8, 8, 1)).data.empty());
+}
+
+TEST(Gaps, ShrunkImagesDoNotMixWhatShowsNothingWithWhatDoes) {
+  GrayImage image{4, 2, {0, 8, 0, 0, 4, 6, 0, 9}};
+  image.has_gaps = true;
+  const GrayImage half = ShrinkImage(image, 1);
+  EXPECT_TRUE(half.has_gaps);
+  EXPECT_THAT(half.data, ElementsAre(6, 0));
+  image.has_gaps = false;
+  EXPECT_THAT(ShrinkImage(image, 1).data, ElementsAre(5, 2));
+}
+
+TEST(Gaps, AMaskIsScaledWithItsImage) {
+  GrayImage mask = Filled(8, 8, 200);
+  Fill(&mask, 0, 0, 3, 8);
+  const GrayImage half = ResizedMask(mask, 4, 4);
+  for (int row = 0; row < 4; ++row) {
+    EXPECT_EQ(half.at(0, row), 0);
+    EXPECT_NE(half.at(1, row), 0);  // half of it is masked
+    EXPECT_NE(half.at(3, row), 0);
+  }
+}
+
+TEST(Gaps, LoadingAppliesMaskAndBorderAtTheSizeAskedFor) {
+  const ScratchFolder folder;
+  cv::Mat picture(40, 60, CV_8UC3, cv::Scalar(90, 90, 90));
+  picture.rowRange(0, 8).setTo(cv::Scalar(0, 0, 0));
+  cv::imwrite((folder / "a.png").string(), picture);
+  cv::Mat mask(40, 60, CV_8U, cv::Scalar(255));
+  mask.colRange(50, 60).setTo(cv::Scalar(0));
+  cv::imwrite((folder / "mask.png").string(), mask);
+  ImageDecoding decoding;
+  decoding.mask = folder / "mask.png";
+  const GrayImage image = LoadGrayImage(folder / "a.png", 30, 20, decoding);
+  EXPECT_TRUE(image.has_gaps);
+  for (int row = 0; row < 20; ++row) {
+    for (int col = 0; col < 30; ++col)
+      EXPECT_EQ(image.at(col, row), row < 4 || col >= 25 ? 0 : 90);
+  }
+}
+
+TEST(Gaps, AMaskThatIsNoImageIsNamed) {
+  try {
+    LoadMask("nothing.png");
+    ADD_FAILURE() << "no error";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::kBadInput);
+    EXPECT_THAT(error.what(), testing::StartsWith("nothing.png: "));
+  }
+}
+
+}  // namespace
+}  // namespace hpm
