@@ -1,14 +1,12 @@
 #include "colmap_plugin/formats/input_file.h"
 
 #include "src/base/error.h"
+#include "src/base/platform/files.h"
 
 #include <cerrno>
 #include <system_error>
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 namespace hpm {
 namespace {
