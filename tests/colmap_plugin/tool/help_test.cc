@@ -1,8 +1,8 @@
 #include "colmap_plugin/tool/help.h"
 
+#include "colmap_plugin/options/option_table.h"
 #include "colmap_plugin/tool/completion.h"
 #include "colmap_plugin/tool/man_page.h"
-#include "colmap_plugin/options/option_table.h"
 
 #include <fstream>
 #include <iterator>
