@@ -42,6 +42,7 @@ std::vector<DeepImage> DeepImagesOf(const Workspace& workspace,
   }
   contents->Read(deep, cancel);
   std::vector<DeepImage> images;
+  images.reserve(deep.size());
   for (const int image : deep)
     images.push_back({image, contents->HashOf(image), std::nullopt});
   return images;

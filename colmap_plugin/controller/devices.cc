@@ -155,6 +155,7 @@ std::vector<std::unique_ptr<Backend>> OpenGpus(const ControllerOptions& options,
   if (static_cast<int>(opened.size()) > std::max(num_images, 1))
     opened.resize(std::max(num_images, 1));
   std::vector<std::unique_ptr<Backend>> backends;
+  backends.reserve(opened.size());
   for (auto& [number, backend] : opened) backends.push_back(std::move(backend));
   return backends;
 }

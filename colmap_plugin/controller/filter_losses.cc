@@ -165,6 +165,7 @@ std::vector<std::string> FilterWarnings(
     }
   }
   std::vector<std::string> lines;
+  lines.reserve(found.size());
   for (const auto& [criterion, here] : found) {
     lines.push_back(fmt::format(
         "{} of {} images lost most of their pixels to the filter ({}: {:.0f} "

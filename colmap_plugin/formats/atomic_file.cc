@@ -1,20 +1,17 @@
 #include "colmap_plugin/formats/atomic_file.h"
 
 #include "src/base/error.h"
+#include "src/base/platform/files.h"
+#include "src/base/platform/processes.h"
 #include "src/base/retries.h"
 
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
-#include <csignal>
-#include <cstdio>
 #include <string>
 #include <system_error>
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/statvfs.h>
-#include <unistd.h>
 
 namespace hpm {
 namespace fs = std::filesystem;
@@ -25,21 +22,18 @@ constexpr size_t kMaxHostLength = 64;
 // ".tmp.<host>." : what a temporary of this host has before the process id.
 // The host's name is cut so that temporaries stay short on any system.
 std::string TemporaryInfix() {
-  char host[256] = {};
-  if (gethostname(host, sizeof(host) - 1) != 0 || host[0] == '\0')
-    return ".tmp.localhost.";
-  host[kMaxHostLength] = '\0';
+  const std::string host = HostName().substr(0, kMaxHostLength);
+  if (host.empty()) return ".tmp.localhost.";
   std::string infix = fmt::format(".tmp.{}.", host);
   std::replace(infix.begin(), infix.end(), '/', '_');
   return infix;
 }
 
 std::string FreeSpace(const fs::path& folder) {
-  struct statvfs status = {};
-  if (statvfs(folder.c_str(), &status) != 0) return "unknown free space";
-  return fmt::format("{} bytes free",
-                     static_cast<uint64_t>(status.f_bavail) *
-                         static_cast<uint64_t>(status.f_frsize));
+  std::error_code error;
+  const fs::space_info space = fs::space(folder, error);
+  if (error) return "unknown free space";
+  return fmt::format("{} bytes free", space.available);
 }
 
 fs::path ParentFolder(const fs::path& path) {
@@ -54,7 +48,8 @@ fs::path TemporaryBeside(const fs::path& path) {
   for (const char c : path.filename().string())
     hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
   return ParentFolder(path) /
-         fmt::format("hpm_{:016x}{}{}", hash, TemporaryInfix(), getpid());
+         fmt::format(
+             "hpm_{:016x}{}{}", hash, TemporaryInfix(), ThisProcessId());
 }
 
 int OpenTemporary(const fs::path& path) {
@@ -70,11 +65,11 @@ int OpenTemporary(const fs::path& path) {
 }
 
 // The process id at the end of the name of a temporary of this host, else 0.
-pid_t OwnerOfTemporary(const std::string& name, const std::string& infix) {
+int64_t OwnerOfTemporary(const std::string& name, const std::string& infix) {
   const size_t digits = name.rfind('.') + 1;
   if (digits == 0 || digits < infix.size()) return 0;
   if (name.compare(digits - infix.size(), infix.size(), infix) != 0) return 0;
-  pid_t pid = 0;
+  int64_t pid = 0;
   const char* end = name.data() + name.size();
   const auto [parsed, error] = std::from_chars(name.data() + digits, end, pid);
   return error == std::errc() && parsed == end && pid > 0 ? pid : 0;
@@ -130,7 +125,7 @@ void AtomicFile::WriteAll(const void* data,
 void AtomicFile::Flush() {
   int result;
   do {
-    result = fsync(fd_);
+    result = SyncFile(fd_);
   } while (result != 0 && errno == EINTR);
   if (result != 0) ThrowUnwritten(errno);
 }
@@ -152,7 +147,7 @@ FileState AtomicFile::Commit() {
     return open(folder_path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   });
   if (folder < 0) return *state;  // a folder that may be written but not listed
-  const int result = RetryCall(folder_path, [&] { return fsync(folder); });
+  const int result = RetryCall(folder_path, [&] { return SyncFile(folder); });
   const int error = result == 0 ? 0 : errno;
   close(folder);
   // Some network file systems cannot sync a folder: then rename is all there
@@ -252,8 +247,9 @@ void RemoveStaleTemporaries(const fs::path& folder) {
        it.increment(error)) {
     std::error_code ignored;
     if (it->symlink_status(ignored).type() != fs::file_type::regular) continue;
-    const pid_t owner = OwnerOfTemporary(it->path().filename().string(), infix);
-    if (owner > 0 && kill(owner, 0) != 0 && errno == ESRCH)
+    const int64_t owner =
+        OwnerOfTemporary(it->path().filename().string(), infix);
+    if (owner > 0 && StatusOfProcess(owner).state == ProcessState::kGone)
       fs::remove(it->path(), ignored);
   }
 }

@@ -1,21 +1,15 @@
 #include "colmap_plugin/formats/published_file.h"
 
+#include "src/base/platform/files.h"
 #include "src/base/retries.h"
-
-#include <sys/stat.h>
 
 namespace hpm {
 namespace {
 
 std::optional<FileState> StateFrom(int result, const struct stat& status) {
   if (result != 0) return std::nullopt;
-#ifdef __APPLE__
-  const timespec& time = status.st_mtimespec;
-#else
-  const timespec& time = status.st_mtim;
-#endif
   return FileState{static_cast<uint64_t>(status.st_size),
-                   int64_t{1000000000} * time.tv_sec + time.tv_nsec};
+                   ModifiedNanoseconds(status)};
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ std::string_view SearchPath() {
 
 // Beside this program as installed, else on PATH (as in a build folder).
 fs::path FindHpmMvs(const fs::path& self) {
-  const fs::path installed =
+  fs::path installed =
       (self.parent_path() / HPM_MVS_FROM_WRAPPER).lexically_normal();
   if (hpm::IsExecutable(installed)) return installed;
   return hpm::FindLater(SearchPath(), "hpm_mvs", "");

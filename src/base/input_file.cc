@@ -1,15 +1,13 @@
 #include "src/base/input_file.h"
 
 #include "src/base/error.h"
+#include "src/base/platform/files.h"
 #include "src/base/retries.h"
 
 #include <cerrno>
 #include <system_error>
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 namespace hpm {
 namespace {

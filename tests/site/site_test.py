@@ -24,8 +24,11 @@ class Site(unittest.TestCase):
         names = "\n".join(path.name for path in (WORK / "site/api").rglob("*.html"))
         for name in ("PatchMatchController", "Backend", "Error"):
             self.assertRegex(names, rf"classhpm_1_1{name}\.html")
-        text = (WORK / "site/api/classhpm_1_1Backend.html").read_text(encoding="utf-8")
-        self.assertIn("Runs one pass in place.", text)
+        # Comments in front of a function become its text.
+        header = (ROOT / "src/engine/backend.h").read_text(encoding="utf-8")
+        comment = re.search(r"\n\n  // ((?:[\w,]+ ){3})", header)[1].strip()
+        page = (WORK / "site/api/classhpm_1_1Backend.html").read_text(encoding="utf-8")
+        self.assertTrue(f"<p>{comment}" in page, comment)
 
     def test_nothing_is_loaded_from_elsewhere(self):
         for path in (WORK / "site").rglob("*.html"):

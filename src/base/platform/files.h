@@ -3,6 +3,8 @@
 // so that callers read alike everywhere.
 #pragma once
 
+#include "src/base/platform/errors.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -11,6 +13,7 @@
 #include "src/base/platform/files_windows.h"
 #else
 #include <fcntl.h>
+#include <stdio.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>

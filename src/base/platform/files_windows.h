@@ -1,7 +1,6 @@
 // Windows' part of files.h, included by it alone.
 #pragma once
 
-#include <cerrno>
 #include <cstddef>
 #include <cstdint>
 
@@ -10,19 +9,13 @@
 #include <sys/stat.h>
 #include <sys/types.h>
 
-// Errors that never come there.
-#ifndef EDQUOT
-#define EDQUOT 10069
-#endif
-#ifndef ESTALE
-#define ESTALE 10070
-#endif
-
 #ifdef _MSC_VER
 using ssize_t = std::ptrdiff_t;
 #endif
 
 namespace hpm {
+
+using off_t = int64_t;  // the C library's has 32 bits
 
 // Bits that the C library there does not use. Handles are not inherited and
 // bytes not translated in any case; opening never waits.

@@ -4,6 +4,7 @@
 #include <csignal>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <locale>
 #include <optional>
 #include <sstream>
@@ -118,6 +119,8 @@ std::string ProcessNamespace() {
 }
 
 ProcessStatus StatusOfProcess(int64_t id) {
+  // Numbers that are no process, or that kill(2) takes for many.
+  if (id <= 0 || id > std::numeric_limits<pid_t>::max()) return {};
   if (kill(static_cast<pid_t>(id), 0) != 0 && errno == ESRCH) return {};
   const std::optional<ProcessStatus> status = Ask(id);
   return status ? *status : ProcessStatus{ProcessState::kAlive, 0};

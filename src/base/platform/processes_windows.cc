@@ -58,6 +58,7 @@ std::string BootId() { return ""; }
 std::string ProcessNamespace() { return ""; }
 
 ProcessStatus StatusOfProcess(int64_t id) {
+  if (id <= 0 || id > UINT32_MAX) return {};
   const HANDLE process = OpenProcess(
       PROCESS_QUERY_LIMITED_INFORMATION, FALSE, static_cast<DWORD>(id));
   if (process == nullptr) {

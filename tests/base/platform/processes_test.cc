@@ -36,6 +36,11 @@ TEST(Processes, ThisOneIsAlive) {
   EXPECT_EQ(status.start_time, StatusOfProcess(ThisProcessId()).start_time);
 }
 
+TEST(Processes, NumbersThatAreNoneAreGone) {
+  for (const int64_t id : {int64_t{0}, int64_t{-1}, (int64_t{1} << 32) + 1})
+    EXPECT_EQ(StatusOfProcess(id).state, ProcessState::kGone) << id;
+}
+
 TEST(Processes, TheMachineHasAName) { EXPECT_NE(HostName(), ""); }
 
 TEST(Processes, BootIdAndNamespaceStayTheSame) {
