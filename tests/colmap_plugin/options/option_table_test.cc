@@ -137,13 +137,14 @@ TEST(OptionTableTest, EveryMemberOfHpmOptionsIsAnOption) {
                geom_max_error,
                num_levels,
                filter_min_agreement,
+               report,
                previews,
                overwrite] = HpmOptions();
   (void)method, (void)device, (void)gpu_images, (void)cpu_target,
       (void)num_iterations, (void)num_geom_iterations;
   (void)num_geom_passes, (void)geom_weight, (void)geom_max_error,
       (void)num_levels, (void)filter_min_agreement;
-  (void)previews, (void)overwrite;
+  (void)report, (void)previews, (void)overwrite;
   (void)num_fine_iterations, (void)num_fine_geom_passes;
   (void)quality, (void)max_views, (void)weak_gradient;
   for (const char* name : {"method",
@@ -162,6 +163,7 @@ TEST(OptionTableTest, EveryMemberOfHpmOptionsIsAnOption) {
                            "geom_max_error",
                            "num_levels",
                            "filter_min_agreement",
+                           "report",
                            "previews",
                            "overwrite"}) {
     EXPECT_NE(FindOption(std::string("Hpm.") + name), nullptr) << name;

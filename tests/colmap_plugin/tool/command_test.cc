@@ -133,7 +133,7 @@ TEST_F(CommandTest, OtherCommandsTakeTheirOwnOptionsAndThoseOfARun) {
   EXPECT_EQ(num_runs_, 1);
   EXPECT_TRUE(own_.fix);
   EXPECT_EQ(options_.workspace.path, "w");
-  EXPECT_EQ(options_.patch_match.max_image_size, 100);
+  EXPECT_EQ(options_.workspace.max_image_size, 100);
   EXPECT_EQ(out_.str(), "one finding\n");
   // A unique beginning is enough.
   EXPECT_EQ(Run({"check", "--workspace_pa=v", "--fi=0"}), 0);
