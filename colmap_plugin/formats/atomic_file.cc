@@ -161,7 +161,7 @@ FileState AtomicFile::Commit() {
 bool AtomicFile::Rename(const FileState& state) const {
   bool is_first = true;
   const int result = RetryCall(path_, [&] {
-    const int once = std::rename(temporary_.c_str(), path_.c_str());
+    const int once = rename(temporary_.c_str(), path_.c_str());
     // The answer to an earlier try may have been lost.
     const bool was_renamed =
         once != 0 && errno == ENOENT && !is_first && StateOf(path_) == state;
