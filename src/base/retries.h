@@ -8,6 +8,7 @@
 #include "src/base/cancel.h"
 #include "src/base/error.h"
 #include "src/base/log.h"
+#include "src/base/platform/errors.h"
 
 #include <cerrno>
 #include <chrono>

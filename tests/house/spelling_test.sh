@@ -6,8 +6,9 @@ command -v codespell >/dev/null || {
   echo "skipped: codespell is not installed; scripts/install_dependencies.sh --release installs it" >&2
   exit 77
 }
-# Names in the code that look like misspelt words: AtLeast(), ReadBy(), the bytes "paDd", kInf.
-names=atleast,readby,padd,kinf
+# Names in the code that look like misspelt words: AtLeast(), ReadBy(), the bytes "paDd", kInf;
+# the variables called statics.
+names=atleast,readby,padd,kinf,statics
 spell() { codespell --ignore-words-list "$names" "$@"; }
 
 if echo "teh" | spell - >/dev/null 2>&1; then
