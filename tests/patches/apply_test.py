@@ -43,7 +43,10 @@ def contents(folder):
 def source_before(patch, folder, version):
     """A tree that holds just the lines `patch` must find, each hunk at its line."""
     for section in re.split(r"^diff --git ", patch, flags=re.MULTILINE)[1:]:
-        name = re.search(r"^--- a/(.*)$", section, re.MULTILINE).group(1)
+        old = re.search(r"^--- a/(.*)$", section, re.MULTILINE)
+        if not old:  # a file that the patch brings
+            continue
+        name = old.group(1)
         lines = []
         pieces = HUNK.split(section)
         for start, hunk in zip(pieces[1::2], pieces[2::2]):
@@ -125,6 +128,22 @@ class PatchesTest(unittest.TestCase):
             result = apply(*arguments)
             self.assertEqual(result.returncode, 2)
             self.assertIn("usage", result.stderr)
+
+    def test_the_commit_for_upstream_applies_and_is_fit_for_its_licence(self):
+        (path,) = (ROOT / "patches/upstream").glob("*.patch")
+        patch = path.read_text().rsplit("\n-- \n", 1)[0] + "\n"
+        source_before(patch, self.folder, "4.2.0.dev0")
+        before = contents(self.folder)
+        command = ["git", "apply", "--whitespace=error", path]
+        result = subprocess.run(command, cwd=self.folder, capture_output=True, text=True)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        after = contents(self.folder)
+        new = {name: after[name].decode() for name in set(after) - set(before)}
+        self.assertIn("src/colmap/mvs/patch_match_hpm_test.cc", new)
+        for name, text in new.items():
+            self.assertTrue(text.startswith("// Copyright (c), ETH Zurich and UNC Chapel Hill."), name)
+            self.assertNotIn("CGAL", text, name)
+        self.assertIn(path.name, (path.parent / "PROPOSAL.md").read_text())
 
     def test_debians_source_package(self):
         source = os.environ.get("HPM_COLMAP_SOURCE")

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Builds the whole of Debian's COLMAP 3.8 with the patch (no GUI, no CUDA) and runs the
 # demo scene through it: the maps must be those of hpm_mvs, byte for byte.
-# usage: whole_colmap_test.sh HPM_MVS FOLDER. COLMAP_BUILD names a finished build to use
-# instead. Exit code 77 (= skipped) without the source package or COLMAP's packages.
+# usage: whole_colmap_test.sh HPM_MVS FOLDER. COLMAP_BUILD names a finished build, of any
+# version, to use instead; patches/README.md tells how to make one. Exit code 77 (= skipped) without the source package or COLMAP's packages.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 root=$PWD
@@ -24,7 +24,8 @@ if [[ -z ${COLMAP_BUILD:-} ]]; then
   ninja -C "$work/build" -j"${JOBS:-2}" colmap_exe
   COLMAP_BUILD=$work/build
 fi
-colmap=$(realpath "$COLMAP_BUILD/src/exe/colmap")
+colmap=$(realpath -e "$COLMAP_BUILD/src/colmap/exe/colmap" 2>/dev/null || # 3.9 and later
+  realpath -e "$COLMAP_BUILD/src/exe/colmap")
 
 fail() { echo "FAILED: $*" >&2; exit 1; }
 fresh() { rm -rf "$work/$1" && mkdir -p "$work/$1" && cp -r data/workshop/{images,sparse,stereo} "$work/$1"; }
@@ -53,6 +54,21 @@ same_maps "$work/direct" "$work/in_place"
 points=$(LC_ALL=C sed -n 's/^element vertex //p' "$work/fused.ply")
 ((points > 2000)) || fail "only $points fused points"
 echo "ok: $points points"
+cp "$work/fused.ply" "$work/in_place/fused.ply"
+cp "$work/fused.ply.vis" "$work/in_place/fused.ply.vis"
+for mesher in poisson delaunay; do
+  input=$work/fused.ply output=$work/meshed-$mesher.ply
+  [[ $mesher == delaunay ]] && input=$work/in_place
+  rm -f "$output"
+  "$colmap" "${mesher}_mesher" --input_path "$input" --output_path "$output" >"$work/$mesher.log" 2>&1 || true
+  if [[ ! -s $output ]] && grep -qi CGAL "$work/$mesher.log"; then
+    echo "skipped: this COLMAP was built without CGAL, which ${mesher}_mesher needs"
+    continue
+  fi
+  faces=$(LC_ALL=C sed -n 's/^element face //p' "$output")
+  ((faces > 1000)) || fail "${mesher}_mesher made only $faces triangles"
+  echo "ok: ${mesher}_mesher made $faces triangles"
+done
 
 echo "== failures"
 fresh broken
@@ -73,7 +89,7 @@ echo "== automatic_reconstructor"
 rm -rf "$work/auto" && mkdir -p "$work/auto/sparse/0"
 cp data/workshop/sparse/* "$work/auto/sparse/0"
 "$colmap" automatic_reconstructor --workspace_path "$work/auto" --image_path data/workshop/images \
-  --use_gpu 0 --quality low >"$work/auto.log" 2>&1 || fail "automatic_reconstructor, see $work/auto.log"
+  --use_gpu 0 --quality low --dense 1 >"$work/auto.log" 2>&1 || fail "automatic_reconstructor, see $work/auto.log"
 rm -rf "$work/expected" && mkdir -p "$work/expected/stereo"
 cp -r "$work"/auto/dense/0/{images,sparse} "$work/expected"
 cp "$work"/auto/dense/0/stereo/*.cfg "$work/expected/stereo"

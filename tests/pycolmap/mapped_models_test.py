@@ -52,8 +52,8 @@ def database_of_hloc(scene, path):
 def open_database(path):
     try:
         return pycolmap.Database.open(path)
-    except AttributeError:  # before 3.13
-        return pycolmap.Database(path)
+    except TypeError:  # before 3.13
+        return pycolmap.Database(str(path))
 
 
 def fuse(cloud, dense):
