@@ -14,6 +14,7 @@
 #include "colmap_plugin/options/method_options.h"
 #include "colmap_plugin/workspace/far_origin.h"
 #include "colmap_plugin/workspace/image_files.h"
+#include "colmap_plugin/workspace/model_overview.h"
 #include "colmap_plugin/workspace/output_check.h"
 #include "colmap_plugin/workspace/run_lock.h"
 #include "colmap_plugin/workspace/run_record.h"
@@ -158,7 +159,7 @@ RunSummary PatchMatchController::Run() {
   const RetryScope retries(log_, &cancel_);
 
   log_(LogLevel::kInfo, "Reading workspace...");
-  Workspace workspace(options_.workspace, log_);
+  Workspace workspace(options_.workspace, log_, cancel_);
   CancelToken stop(&cancel_);
   const RunLock lock(workspace.StatePath(), log_, &stop);
   RemoveStaleTemporaries(workspace.StereoPath());
@@ -167,15 +168,22 @@ RunSummary PatchMatchController::Run() {
 
   log_(LogLevel::kInfo, "Reading configuration...");
   const ProblemOptions& problem_options = options_.problems;
+  const ModelOverview overview(
+      workspace, problem_options.depth_min, problem_options.depth_max, stop);
   std::vector<StereoProblem> problems =
-      ReadProblems(workspace, problem_options, log_);
+      ReadProblems(workspace, overview, problem_options, log_, stop);
   const size_t num_references = problems.size();
   log_(LogLevel::kInfo,
        fmt::format("Configuration has {} problems...", num_references));
   WarnOfFarOrigin(workspace, problems, log_);
 
   const bool geometric = options_.patch_match.geom_consistency;
-  if (geometric) AddSourceProblems(workspace, problem_options, &problems);
+  const auto add_sources = [&] {
+    if (!geometric) return;
+    AddSourceProblems(
+        workspace, overview, problem_options, log_, stop, &problems);
+  };
+  add_sources();
   SetLevels(workspace, &options_);
   const Schedule schedule = MakeSchedule(MakeScheduleOptions(options_));
   StagePlan plan(workspace, problems, schedule, options_, &contents, stop);
@@ -222,8 +230,9 @@ RunSummary PatchMatchController::Run() {
       workspace.DropPicture(error.image());
       // The references are the same: those that cannot be computed stay as
       // problems.
-      problems = ReadProblems(workspace, problem_options, nullptr);
-      if (geometric) AddSourceProblems(workspace, problem_options, &problems);
+      problems =
+          ReadProblems(workspace, overview, problem_options, nullptr, stop);
+      add_sources();
       options_.hpm.overwrite = false;
       plan.Update();
     } catch (const Error& error) {

@@ -6,6 +6,7 @@
 #include "colmap_plugin/formats/map_file.h"
 #include "colmap_plugin/workspace/source_level.h"
 #include "colmap_plugin/workspace/stamp.h"
+#include "src/base/platform/processes.h"
 #include "src/base/retries.h"
 #include "src/engine/phase_timer.h"
 
@@ -162,8 +163,12 @@ void FileMapStore::WriteMaps(int stage,
   constexpr DepthRange kAll = {0, std::numeric_limits<float>::infinity()};
   const HypothesisMap& map = *output.map;
   const StageFiles files = plan_.Files(stage, problems_[problem].ref_image);
-  MapWriter normal(files.normal, {map.width, map.height, 3});
-  MapWriter depth(files.depth, {map.width, map.height, 1});
+  const bool is_public = plan_.IsPublic(stage, problems_[problem].ref_image);
+  const Durability durability =
+      is_public ? Durability::kPowerCut : Durability::kProcess;
+  if (!is_public) stamp->unsynced_since = BootId();
+  MapWriter normal(files.normal, {map.width, map.height, 3}, durability);
+  MapWriter depth(files.depth, {map.width, map.height, 1}, durability);
   const WrittenDepths written =
       WritePlanes(map,
                   output.views.ref.camera,

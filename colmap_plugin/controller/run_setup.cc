@@ -10,9 +10,13 @@
 namespace hpm {
 
 void AddSourceProblems(const Workspace& workspace,
+                       const ModelOverview& overview,
                        const ProblemOptions& options,
+                       const LogSink& log,
+                       const CancelToken& cancel,
                        std::vector<StereoProblem>* problems) {
-  for (StereoProblem& problem : SourceProblems(workspace, *problems, options))
+  for (StereoProblem& problem :
+       SourceProblems(workspace, overview, *problems, options, log, cancel))
     problems->push_back(std::move(problem));
 }
 

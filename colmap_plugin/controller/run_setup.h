@@ -3,7 +3,10 @@
 #pragma once
 
 #include "colmap_plugin/options/options.h"
+#include "colmap_plugin/workspace/model_overview.h"
 #include "colmap_plugin/workspace/problem.h"
+#include "src/base/cancel.h"
+#include "src/base/log.h"
 
 #include <vector>
 
@@ -11,7 +14,10 @@ namespace hpm {
 
 // Problems of images that are only sources, behind the references.
 void AddSourceProblems(const Workspace& workspace,
+                       const ModelOverview& overview,
                        const ProblemOptions& options,
+                       const LogSink& log,
+                       const CancelToken& cancel,
                        std::vector<StereoProblem>* problems);
 
 // --Hpm.num_levels, where the user leaves it to the method. The largest image

@@ -5,6 +5,7 @@
 #include "colmap_plugin/formats/map_file.h"
 #include "colmap_plugin/workspace/fingerprint.h"
 #include "src/base/error.h"
+#include "src/base/platform/processes.h"
 
 #include <algorithm>
 #include <map>
@@ -72,12 +73,14 @@ StagePlan::StagePlan(const Workspace& workspace,
                      const Schedule& schedule,
                      const ControllerOptions& options,
                      ImageContents* contents,
-                     const CancelToken& cancel)
+                     const CancelToken& cancel,
+                     PlanAccess access)
     : workspace_(workspace),
       problems_(problems),
       options_(options),
       contents_(contents),
       cancel_(cancel),
+      access_(access),
       stages_(MakeStages(schedule)) {
   Update();
 }
@@ -99,10 +102,11 @@ void StagePlan::Update() {
   fingerprints_.clear();
   found_foreign_maps_ = false;
   for (int s = 0; s < num_stages; ++s) {
-    fingerprints_.emplace_back();
+    fingerprints_.emplace_back(problems.size());
     const std::string of_stage = FingerprintOfStage(
         stages_[s].name, stages_[s].spec, stages_[s].is_final, options_);
-    for (int p = 0; p < num_problems; ++p) {
+    tbb::parallel_for(0, num_problems, [&](int p) {
+      cancel_.ThrowIfCancelled();
       Fingerprint hash;
       hash.AddString(OwnFingerprint(
           workspace_, *contents_, problems[p], stages_[s].is_final, of_stage));
@@ -114,13 +118,15 @@ void StagePlan::Update() {
           hash.AddString(q < 0 ? "" : fingerprints_[s - 1][q]);
         }
       }
-      fingerprints_[s].push_back(hash.Hex());
-    }
+      fingerprints_[s][p] = hash.Hex();
+    });
   }
 
   // Backwards: the maps COLMAP's users see must be finished; those of inner
   // passes only if the pass after them still has to read them.
   needed_.assign(num_stages, std::vector<bool>(num_problems, false));
+  states_.assign(num_stages,
+                 std::vector<MapState>(num_problems, MapState::kNotAsked));
   for (int s = num_stages - 1; s >= 0; --s) {
     std::vector<bool> wanted(num_problems);  // by the stage after
     for (int q = 0; q < num_problems; ++q) {
@@ -145,8 +151,9 @@ void StagePlan::Update() {
       });
     }
     for (size_t i = 0; i < asked.size(); ++i) {
-      needed_[s][asked[i]] = !found[i].is_finished;
-      found_foreign_maps_ |= found[i].is_foreign;
+      states_[s][asked[i]] = found[i].state;
+      needed_[s][asked[i]] = found[i].state != MapState::kFinished;
+      found_foreign_maps_ |= found[i].state == MapState::kForeign;
       damaged_maps_.insert(found[i].damaged.begin(), found[i].damaged.end());
     }
   }
@@ -234,13 +241,20 @@ StagePlan::Found StagePlan::Look(int s, int p, bool may_be_cut) const {
   const std::string fingerprint = stamp ? stamp->fingerprint : "";
   const bool is_complete = fingerprint == fingerprints_[s][p];
   const bool is_cut = fingerprint == CutFingerprintOf(s, p);
-  found.is_foreign =
-      !is_complete && !is_cut && fingerprint != IncompleteFingerprintOf(s, p);
-  if (found.is_foreign) return found;
+  const bool is_incomplete = fingerprint == IncompleteFingerprintOf(s, p);
+  if (!is_complete && !is_cut && !is_incomplete) {
+    found.state = MapState::kForeign;
+    return found;
+  }
   // Incomplete ones, too: where they cannot be made again, others go on with
   // them.
-  found.is_finished = AreIntact(s, image, &*stamp, &found) &&
-                      (is_complete || (is_cut && may_be_cut));
+  if (!AreIntact(s, image, &*stamp, &found)) {
+    if (!found.damaged.empty()) found.state = MapState::kDamaged;
+  } else if (is_complete || (is_cut && may_be_cut)) {
+    found.state = MapState::kFinished;
+  } else if (is_incomplete) {
+    found.state = MapState::kIncomplete;
+  }
   return found;
 }
 
@@ -249,6 +263,9 @@ bool StagePlan::AreIntact(int s, int image, Stamp* stamp, Found* found) const {
   std::map<std::string, std::filesystem::path> wanted = {
       {"depth", files.depth}, {"normal", files.normal}};
   if (WritesGraph(s, image)) wanted["graph"] = files.graph;
+  const bool may_be_lost =
+      stamp->unsynced_since &&
+      (stamp->unsynced_since->empty() || *stamp->unsynced_since != BootId());
   bool is_absent = false, has_new_time = false;
   for (const auto& [kind, path] : wanted) {
     const std::optional<FileState> state = StateOf(path);
@@ -258,15 +275,18 @@ bool StagePlan::AreIntact(int s, int image, Stamp* stamp, Found* found) const {
       continue;
     }
     PublishedFile& file = stamped->second;
-    if (*state == file.state) continue;
+    const bool has_same_state = *state == file.state;
+    if (has_same_state && !may_be_lost && access_ != PlanAccess::kVerify)
+      continue;
     if (state->num_bytes != file.state.num_bytes ||
         ChecksumOf(kind, path, cancel_) != file.checksum) {
       found->damaged.push_back(path);
       continue;
     }
     file.state = *state;
-    has_new_time = true;
+    has_new_time |= !has_same_state;
   }
+  if (access_ != PlanAccess::kRun) return !is_absent && found->damaged.empty();
   const std::filesystem::path& folder = workspace_.StatePath();
   const std::string& name = workspace_.ImageName(image);
   if (!found->damaged.empty()) {

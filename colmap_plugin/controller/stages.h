@@ -37,6 +37,23 @@ struct StageFiles {
   std::filesystem::path depth, normal, graph;
 };
 
+// What was found of the maps of a stage of an image.
+enum class MapState {
+  kNotAsked,  // nobody needs them (any more), or they cannot be computed
+  kFinished,
+  kMissing,
+  kForeign,  // made with other options or inputs, or by others
+  kIncomplete,
+  kDamaged,
+};
+
+// How StagePlan looks at maps.
+enum class PlanAccess {
+  kRun,      // corrects stamps
+  kInspect,  // changes no file
+  kVerify,   // likewise, and trusts no length and time
+};
+
 class StagePlan {
  public:
   // Looks at the files of the workspace; computes nothing. Maps whose size and
@@ -48,7 +65,8 @@ class StagePlan {
             const Schedule& schedule,
             const ControllerOptions& options,
             ImageContents* contents,
-            const CancelToken& cancel);
+            const CancelToken& cancel,
+            PlanAccess access = PlanAccess::kRun);
 
   // Plans anew after the problems, of the same references, or the options
   // changed.
@@ -59,6 +77,8 @@ class StagePlan {
   // maps, or maps that others still need, are missing, damaged or made with
   // other options.
   bool IsNeeded(int s, int p) const { return needed_[s][p]; }
+  // As it was found, by the newest plan.
+  MapState StateAt(int s, int p) const { return states_[s][p]; }
   int CountNeeded(int s) const;
   // True if maps exist that were made with other options, from other images, by
   // another version or by another program, in the eyes of all plans so far.
@@ -106,10 +126,8 @@ class StagePlan {
   bool WritesGraph(int s, int image) const;
 
  private:
-  // What was found of the maps of a stage of a problem.
   struct Found {
-    bool is_finished = false;
-    bool is_foreign = false;
+    MapState state = MapState::kMissing;
     std::vector<std::filesystem::path> damaged;
   };
   Found Look(int s, int p, bool may_be_cut) const;
@@ -122,11 +140,13 @@ class StagePlan {
   const ControllerOptions& options_;
   ImageContents* contents_;
   const CancelToken& cancel_;
+  const PlanAccess access_;
   std::vector<Stage> stages_;
   // -1: the image is neither a reference nor a source of one.
   std::vector<int> problem_of_image_;
   std::vector<std::vector<std::string>> fingerprints_;  // [stage][problem]
   std::vector<std::vector<bool>> needed_;               // [stage][problem]
+  std::vector<std::vector<MapState>> states_;           // [stage][problem]
   std::set<std::filesystem::path> damaged_maps_;
   bool found_foreign_maps_ = false;    // by the newest plan
   bool replaces_foreign_maps_ = true;  // until a plan finds none

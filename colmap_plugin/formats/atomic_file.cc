@@ -77,7 +77,8 @@ int64_t OwnerOfTemporary(const std::string& name, const std::string& infix) {
 
 }  // namespace
 
-AtomicFile::AtomicFile(const fs::path& path) : path_(path) {
+AtomicFile::AtomicFile(const fs::path& path, Durability durability)
+    : path_(path), durability_(durability) {
   const std::error_code error = MakeFolder(ParentFolder(path));
   if (error) Throw("create the folder of", error.value());
   const fs::path temporary = TemporaryBeside(path);
@@ -123,6 +124,7 @@ void AtomicFile::WriteAll(const void* data,
 }
 
 void AtomicFile::Flush() {
+  if (durability_ == Durability::kProcess) return;
   int result;
   do {
     result = SyncFile(fd_);
@@ -141,6 +143,7 @@ FileState AtomicFile::Commit() {
   if (close(fd) != 0 && errno != EINTR) ThrowUnwritten(errno);
   if (!Rename(*state)) Throw("put in place", errno);
   temporary_.clear();
+  if (durability_ == Durability::kProcess) return *state;
 
   const fs::path folder_path = ParentFolder(path_);
   const int folder = RetryCall(folder_path, [&] {
@@ -230,9 +233,11 @@ void AtomicFile::Throw(const char* action, int error) const {
                           remedy));
 }
 
-void WriteFileAtomically(const fs::path& path, std::string_view contents) {
+void WriteFileAtomically(const fs::path& path,
+                         std::string_view contents,
+                         Durability durability) {
   RetryWriting([&] {
-    AtomicFile file(path);
+    AtomicFile file(path, durability);
     file.Write(contents);
     file.Commit();
   });

@@ -1,5 +1,5 @@
 // A file appears complete or not at all: temporary file in the same folder,
-// every write checked, fsync, rename, fsync of the folder.
+// every write checked, fsync, rename, fsync of the folder (see Durability).
 // Errors: kOutOfResources for a full disk, a quota or a file size limit;
 // kBadInput for a folder that cannot be written; kFailure for the rest, as
 // TransientError (retries.h) where the whole file may be written again: what
@@ -17,12 +17,21 @@
 
 namespace hpm {
 
+enum class Durability {
+  kPowerCut,  // committed files survive a power cut
+  // They survive the end of the process. A power cut may leave an older file,
+  // none, or, on some file systems, one of the right length with other bytes:
+  // for files that can be made again, and whose readers find that out.
+  kProcess,
+};
+
 // One writer per path at a time within a process.
 class AtomicFile {
  public:
   // Creates missing parent folders. The temporary lies beside the file as
   // "hpm_<hash of its name>.tmp.<host>.<pid>", opened with O_EXCL | O_NOFOLLOW.
-  explicit AtomicFile(const std::filesystem::path& path);
+  explicit AtomicFile(const std::filesystem::path& path,
+                      Durability durability = Durability::kPowerCut);
   ~AtomicFile();  // removes the temporary unless Commit() succeeded
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
@@ -32,7 +41,8 @@ class AtomicFile {
   // Several threads may do so at once; Write() goes on where it was.
   void WriteAt(uint64_t offset, const void* data, size_t num_bytes);
 
-  // What was written is on the disk then, so that Commit() has little to do.
+  // What was written is on the disk then, if it has to be, so that Commit() has
+  // little to do.
   void Flush();
 
   // Publishes the file, and tells how it lies there. Throws
@@ -50,6 +60,7 @@ class AtomicFile {
   bool Rename(const FileState& state) const;
 
   std::filesystem::path path_;
+  Durability durability_;
   std::filesystem::path temporary_;  // empty once it was renamed
   int fd_ = -1;
   std::atomic<uint64_t> num_written_{0};
@@ -57,7 +68,8 @@ class AtomicFile {
 
 // Retries what passes.
 void WriteFileAtomically(const std::filesystem::path& path,
-                         std::string_view contents);
+                         std::string_view contents,
+                         Durability durability = Durability::kPowerCut);
 
 // Removes temporaries below `folder` whose process is gone (same host only: the
 // processes of another host cannot be seen). Never throws for files it cannot

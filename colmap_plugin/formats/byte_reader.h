@@ -45,9 +45,10 @@ class ByteReader : public InputCursor {
 
   uint64_t place() const override { return record_; }
 
+  uint64_t Remaining() const { return file_.size() - offset_; }
+
  private:
   std::string Message(uint64_t place, const std::string& what) const override;
-  uint64_t Remaining() const { return file_.size() - offset_; }
   // The next bytes, at most the capacity of the buffer; consumed.
   const char* Take(size_t num_bytes);
 

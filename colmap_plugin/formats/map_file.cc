@@ -137,11 +137,13 @@ Map ReadMap(const std::filesystem::path& path) {
   return map;
 }
 
-MapWriter::MapWriter(const std::filesystem::path& path, const MapHeader& header)
+MapWriter::MapWriter(const std::filesystem::path& path,
+                     const MapHeader& header,
+                     Durability durability)
     : path_(path),
       header_(header),
       row_hashes_(static_cast<size_t>(header.height) * header.channels),
-      file_(path) {
+      file_(path, durability) {
   const std::string text =
       FormatGridHeader(header.width, header.height, header.channels);
   header_bytes_ = text.size();

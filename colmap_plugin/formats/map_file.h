@@ -62,7 +62,9 @@ Map ReadMap(const std::filesystem::path& path);
 // not finite, Error(kOutOfResources) on a full disk.
 class MapWriter {
  public:
-  MapWriter(const std::filesystem::path& path, const MapHeader& header);
+  MapWriter(const std::filesystem::path& path,
+            const MapHeader& header,
+            Durability durability = Durability::kPowerCut);
 
   // So many rows of one channel.
   void WriteRows(int channel, int row, int num_rows, const float* values);

@@ -132,19 +132,19 @@ SparseModel ReadBundle(const fs::path& folder,
              translation,
              &model);
   }
+  std::vector<int> track;
   for (int i = 0; i < num_points; ++i) {
-    SparsePoint point;
-    for (int k = 0; k < 3; ++k)
-      point.xyz[k] = words.Read<double>("a coordinate");
+    Eigen::Vector3d xyz;
+    for (int k = 0; k < 3; ++k) xyz[k] = words.Read<double>("a coordinate");
     for (int k = 0; k < 3; ++k) words.Read<double>("a colour");
     const int track_length = words.ReadCount("a track length");
+    track.clear();
     for (int k = 0; k < track_length; ++k) {
-      point.track.push_back(
-          words.ReadInRange(0, num_images, "the image index"));
+      track.push_back(words.ReadInRange(0, num_images, "the image index"));
       for (int skipped = 0; skipped < 3; ++skipped)
         words.Read<double>("a feature");
     }
-    if (point.xyz.allFinite()) model.points.push_back(std::move(point));
+    if (xyz.allFinite()) model.points.Add(xyz, track);
   }
   return model;
 }

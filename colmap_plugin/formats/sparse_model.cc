@@ -50,8 +50,9 @@ bool IsComplete(const fs::path& folder, const Encoding& encoding) {
 
 SparseModel Read(const fs::path& folder,
                  const Encoding& encoding,
-                 const LogSink& log) {
-  SparseModelBuilder builder;
+                 const LogSink& log,
+                 const CancelToken& cancel) {
+  SparseModelBuilder builder(&cancel);
   encoding.read_cameras(FilePath(folder, "cameras", encoding), &builder);
   encoding.read_images(FilePath(folder, "images", encoding), &builder);
   const fs::path rigs = FilePath(folder, "rigs", encoding);
@@ -78,9 +79,12 @@ SparseModel Read(const fs::path& folder,
 
 }  // namespace
 
-SparseModel ReadSparseModel(const fs::path& folder, const LogSink& log) {
+SparseModel ReadSparseModel(const fs::path& folder,
+                            const LogSink& log,
+                            const CancelToken& cancel) {
   for (const Encoding* encoding : {&kBinary, &kText}) {
-    if (IsComplete(folder, *encoding)) return Read(folder, *encoding, log);
+    if (IsComplete(folder, *encoding))
+      return Read(folder, *encoding, log, cancel);
   }
   std::error_code error;
   if (!fs::exists(folder / "cameras.bin", error) && error) {

@@ -12,21 +12,34 @@ namespace {
 
 constexpr uint64_t kPoseBytes = 7 * sizeof(double);
 
-// Calls read_record(&reader) for each record that the count at the start of the
-// file claims.
-template <class ReadRecord>
-void ReadRecords(ByteReader* reader,
-                 uint64_t min_record_bytes,
-                 const char* what,
-                 ReadRecord read_record) {
+// At the start of the file; checked against the bytes that follow.
+uint64_t ReadCount(ByteReader* reader,
+                   uint64_t min_record_bytes,
+                   const char* what) {
   reader->BeginRecord();
   const auto num_records = reader->Read<uint64_t>();
   reader->CheckCount(num_records, min_record_bytes, what);
+  return num_records;
+}
+
+// Calls read_record(&reader) so many times.
+template <class ReadRecord>
+void ReadEach(ByteReader* reader,
+              uint64_t num_records,
+              ReadRecord read_record) {
   for (uint64_t i = 0; i < num_records; ++i) {
     reader->BeginRecord();
     read_record(reader);
   }
   reader->CheckAtEnd();
+}
+
+template <class ReadRecord>
+void ReadRecords(ByteReader* reader,
+                 uint64_t min_record_bytes,
+                 const char* what,
+                 ReadRecord read_record) {
+  ReadEach(reader, ReadCount(reader, min_record_bytes, what), read_record);
 }
 
 PoseRecord ReadPose(ByteReader* reader) {
@@ -133,14 +146,19 @@ void ReadFramesBinary(const std::filesystem::path& path,
 void ReadPointsBinary(const std::filesystem::path& path,
                       SparseModelBuilder* builder) {
   ByteReader file(path);
+  constexpr uint64_t kBytesWithoutTrack = 51, kElementBytes = 8;
+  const uint64_t num_points = ReadCount(&file, kBytesWithoutTrack, "points");
+  builder->ReservePoints(
+      num_points,
+      (file.Remaining() - kBytesWithoutTrack * num_points) / kElementBytes);
   std::vector<uint32_t> track;
-  ReadRecords(&file, 51, "points", [builder, &track](ByteReader* reader) {
+  ReadEach(&file, num_points, [builder, &track](ByteReader* reader) {
     const auto id = reader->Read<uint64_t>();
     Eigen::Vector3d xyz;
     for (int i = 0; i < 3; ++i) xyz[i] = reader->Read<double>();
     reader->Skip(3 + sizeof(double));  // colour and reprojection error
     const auto track_length = reader->Read<uint64_t>();
-    reader->CheckCount(track_length, 8, "track elements");
+    reader->CheckCount(track_length, kElementBytes, "track elements");
     track.clear();
     for (uint64_t i = 0; i < track_length; ++i) {
       track.push_back(reader->Read<uint32_t>());

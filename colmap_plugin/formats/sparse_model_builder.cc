@@ -138,20 +138,20 @@ void SparseModelBuilder::AddPoint(
     uint64_t id,
     const Eigen::Vector3d& xyz,
     const std::vector<uint32_t>& track_image_ids) {
-  SparsePoint point;
-  point.xyz = xyz;
-  point.track.reserve(track_image_ids.size());
+  constexpr size_t kPointsBetweenLooks = 4096;
+  if (point_ids_.size() % kPointsBetweenLooks == 0) cancel_->ThrowIfCancelled();
+  track_.clear();
   for (const uint32_t image_id : track_image_ids) {
     const auto it = image_index_.find(image_id);
     ++model_.num_observations;
     if (it != image_index_.end()) {
-      point.track.push_back(it->second);
+      track_.push_back(it->second);
     } else if (model_.num_left_out++ == 0) {
       model_.left_out_example = image_id;
     }
   }
   point_ids_.emplace_back(id, cursor.place());
-  if (xyz.allFinite()) model_.points.push_back(std::move(point));
+  if (xyz.allFinite()) model_.points.Add(xyz, track_);
 }
 
 void SparseModelBuilder::CheckPointIds(const InputCursor& cursor) {
@@ -164,7 +164,7 @@ void SparseModelBuilder::CheckPointIds(const InputCursor& cursor) {
     cursor.FailAt((repeated + 1)->second,
                   fmt::format("point id {} occurs twice", repeated->first));
   }
-  point_ids_.clear();
+  point_ids_ = {};
 }
 
 }  // namespace hpm

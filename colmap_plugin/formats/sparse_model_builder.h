@@ -46,6 +46,8 @@ struct FrameData {
 
 class SparseModelBuilder {
  public:
+  explicit SparseModelBuilder(const CancelToken* cancel) : cancel_(cancel) {}
+
   void AddCamera(const InputCursor& cursor, uint32_t id, SparseCamera camera);
 
   void AddImage(const InputCursor& cursor,
@@ -68,6 +70,13 @@ class SparseModelBuilder {
   // frames. A model without rigs and frames keeps those of its images file.
   void ApplyFrames(const InputCursor& cursor);
 
+  // At most so many are about to come.
+  void ReservePoints(size_t num_points, size_t num_elements) {
+    model_.points.Reserve(num_points, num_elements);
+    point_ids_.reserve(num_points);
+  }
+
+  // Throws Error(kInterrupted): models take seconds to read.
   void AddPoint(const InputCursor& cursor,
                 uint64_t id,
                 const Eigen::Vector3d& xyz,
@@ -86,6 +95,7 @@ class SparseModelBuilder {
   SparseModel Release() { return std::move(model_); }
 
  private:
+  const CancelToken* cancel_;
   SparseModel model_;
   std::unordered_map<uint32_t, int> image_index_;
   // Per rig: sensor_from_rig of each sensor, where it is known.
@@ -96,7 +106,8 @@ class SparseModelBuilder {
   std::set<uint32_t> images_in_frames_;
   std::vector<RigidPose> replaced_poses_;
   std::vector<std::pair<uint64_t, uint64_t>>
-      point_ids_;  // id, place in the file
+      point_ids_;           // id, place in the file
+  std::vector<int> track_;  // of the newest point
 };
 
 }  // namespace hpm

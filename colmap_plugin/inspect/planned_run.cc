@@ -10,19 +10,27 @@ PlannedRun::PlannedRun(const ControllerOptions& options,
                        const CancelToken& cancel)
     : options_(options),
       cancel_(cancel),
-      workspace_(options_.workspace, log),
+      workspace_(options_.workspace, log, cancel),
       contents_(workspace_) {
   SetLevels(workspace_, &options_);
 }
 
-void PlannedRun::Plan(bool look_at_maps, const LogSink& log) {
+void PlannedRun::Plan(bool look_at_maps,
+                      const LogSink& log,
+                      PlanAccess access) {
   workspace_.StretchDeepImages(
       FindDeepRange(workspace_, &contents_, log, cancel_));
   const ProblemOptions& problem_options = options_.problems;
-  problems_ = ReadProblems(workspace_, problem_options, log);
+  const ModelOverview overview(workspace_,
+                               problem_options.depth_min,
+                               problem_options.depth_max,
+                               cancel_);
+  problems_ = ReadProblems(workspace_, overview, problem_options, log, cancel_);
   num_references_ = static_cast<int>(problems_.size());
-  if (options_.patch_match.geom_consistency)
-    AddSourceProblems(workspace_, problem_options, &problems_);
+  if (options_.patch_match.geom_consistency) {
+    AddSourceProblems(
+        workspace_, overview, problem_options, log, cancel_, &problems_);
+  }
   options_.hpm.overwrite |= !look_at_maps;
   plan_ =
       std::make_unique<StagePlan>(workspace_,
@@ -30,7 +38,8 @@ void PlannedRun::Plan(bool look_at_maps, const LogSink& log) {
                                   MakeSchedule(MakeScheduleOptions(options_)),
                                   options_,
                                   &contents_,
-                                  cancel_);
+                                  cancel_,
+                                  access);
 }
 
 double PlannedRun::Work() const {

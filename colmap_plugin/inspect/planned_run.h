@@ -19,9 +19,11 @@ class PlannedRun {
              const LogSink& log,
              const CancelToken& cancel);
 
-  // The problems and stages. look_at_maps: else all maps count as absent, and
-  // no stamp is touched (StagePlan renews stamps of maps that were copied).
-  void Plan(bool look_at_maps, const LogSink& log);
+  // The problems and stages. look_at_maps: else all maps count as absent.
+  // access: none that changes files.
+  void Plan(bool look_at_maps,
+            const LogSink& log,
+            PlanAccess access = PlanAccess::kInspect);
 
   // Levels and image size as the run has them.
   const ControllerOptions& options() const { return options_; }

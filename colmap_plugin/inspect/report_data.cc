@@ -60,7 +60,8 @@ class Gatherer {
         num_shared_[{problems[p].ref_image, src}] = 0;
     }
     depths_.resize(workspace.num_images());
-    for (const SparsePoint& point : workspace.model().points) Count(point);
+    const SparsePoints& points = workspace.model().points;
+    for (size_t i = 0; i < points.size(); ++i) Count(points[i]);
   }
 
   void GatherImage(size_t p) const {
@@ -161,7 +162,7 @@ class Gatherer {
 ReportData GatherReport(const ControllerOptions& options,
                         const LogSink& log,
                         const CancelToken& cancel) {
-  const Workspace workspace(options.workspace, log);
+  const Workspace workspace(options.workspace, log, cancel);
   const std::vector<StereoProblem> problems =
       ReadProblems(workspace, options.problems, log);
   ReportData data;

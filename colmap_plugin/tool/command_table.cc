@@ -84,6 +84,17 @@ std::vector<Command> MakeTable() {
         ExportRow("output_path", &E::output_path, Anything(), "Folder for the files; not given: stereo/export"),
         ExportRow("depth_step", &E::depth_step, AtLeast(0),
                   "png16: model units per step; 0: each image's largest depth becomes 65535")}},
+      {"status", "Tell how far a workspace is: what each stage has finished and still needs",
+       "Plans as a run with the same options would and looks at all maps, without changing anything. A stage's maps "
+       "are finished when they are good or of no use any more; needed: a run would make them, be it that they are "
+       "missing, damaged, incomplete (made without the maps of a source) or foreign (made with other options or "
+       "inputs).",
+       "0 complete, 4 complete but for images that cannot be computed, 8 something is needed",
+       TakesOptions::kAll,
+       {Row("verify", &C::verify, Anything(),
+            "Read all maps and compare their checksums, also where length and time are those they were written with"),
+        Row("format", &C::format, OneOf({"text", "json"}),
+            "json: one line with complete, failing, and stages in order, each with name and counts")}},
       {"help", "Print this text; help COMMAND: what a command does and takes; help --markdown, --man, --bash: as a "
        "document, manual page, completion", "", "", TakesOptions::kNone, {}},
       {"version", "Print the version", "", "", TakesOptions::kNone, {}},

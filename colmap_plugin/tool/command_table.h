@@ -17,6 +17,8 @@ namespace hpm {
 // these.
 struct CommandOptions {
   bool fix = false;
+  bool verify = false;
+  std::string format = "text";
   double sample_seconds = 30;
   std::filesystem::path report_path;
   ExportOptions export_maps;

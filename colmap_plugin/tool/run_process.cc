@@ -4,6 +4,7 @@
 #include "colmap_plugin/inspect/check_maps.h"
 #include "colmap_plugin/inspect/export_maps.h"
 #include "colmap_plugin/inspect/plan_run.h"
+#include "colmap_plugin/inspect/run_status.h"
 #include "colmap_plugin/inspect/write_report.h"
 #include "colmap_plugin/tool/dispatch.h"
 #include "colmap_plugin/tool/help.h"
@@ -112,6 +113,20 @@ int RunExport(const CommandCall& call) {
   return result.failed.empty() ? 0 : static_cast<int>(ErrorCode::kPartial);
 }
 
+int RunStatusCommand(const CommandCall& call) {
+  // Whoever reads standard output reads the answer.
+  const LogSink warnings = [&call](LogLevel level, const std::string& line) {
+    if (level != LogLevel::kInfo) call.log(level, line);
+  };
+  const RunStatus status =
+      FindStatus(call.options, call.own.verify, warnings, *call.cancel);
+  const int printed = call.print(
+      call.own.format == "json" ? StatusJson(status) : StatusText(status));
+  if (printed != 0) return printed;
+  if (status.num_needed() > 0) return kNotComplete;
+  return status.failing.empty() ? 0 : static_cast<int>(ErrorCode::kPartial);
+}
+
 }  // namespace
 
 int RunProcess(const std::vector<std::string>& arguments) {
@@ -128,6 +143,7 @@ int RunProcess(const std::vector<std::string>& arguments) {
                        RunStereo,
                        {{"plan", RunPlanCommand},
                         {"check", RunCheck},
+                        {"status", RunStatusCommand},
                         {"export", RunExport},
                         {"report", RunReport}}};
   const int exit_code = RunTool(arguments, tool);

@@ -4,13 +4,19 @@
 
 namespace hpm {
 
-AutomaticSources::AutomaticSources(const Workspace& workspace)
+AutomaticSources::AutomaticSources(const Workspace& workspace,
+                                   const TrackIndex& tracks,
+                                   const CancelToken& cancel)
     : workspace_(workspace),
-      selector_(workspace),
+      selector_(workspace, tracks),
       overlap_(workspace),
-      all_(workspace.num_images(), true) {
-  for (int i = 0; i < workspace.num_images(); ++i)
-    badly_tracked_.push_back(selector_.NumSharedPoints(i) < kEnoughPoints);
+      cancel_(cancel) {
+  for (int i = 0; i < workspace.num_images(); ++i) {
+    cancel.ThrowIfCancelled();
+    all_.push_back(i);
+    is_badly_tracked_.push_back(!selector_.SharesPoints(i, kEnoughPoints));
+    if (is_badly_tracked_.back()) badly_tracked_.push_back(i);
+  }
 }
 
 std::vector<int> AutomaticSources::Best(int ref_image,
@@ -19,12 +25,12 @@ std::vector<int> AutomaticSources::Best(int ref_image,
                                         size_t max_num) const {
   if (max_num == 0) return {};
   std::vector<int> sources =
-      selector_.Select(ref_image, min_angle, /*max_num=*/-1);
+      selector_.Select(ref_image, min_angle, /*max_num=*/-1, cancel_);
   // Images whose tracks tell too little are not missed by others, either.
   AddOverlapping(ref_image,
                  range,
                  min_angle,
-                 badly_tracked_[ref_image] ? all_ : badly_tracked_,
+                 is_badly_tracked_[ref_image] ? all_ : badly_tracked_,
                  max_num,
                  &sources);
   return sources;
@@ -33,8 +39,8 @@ std::vector<int> AutomaticSources::Best(int ref_image,
 std::vector<int> AutomaticSources::All(
     int ref_image, const std::optional<DepthRange>& range) const {
   std::vector<int> sources =
-      selector_.Select(ref_image, /*min_angle=*/0, /*max_num=*/-1);
-  if (badly_tracked_[ref_image]) {
+      selector_.Select(ref_image, /*min_angle=*/0, /*max_num=*/-1, cancel_);
+  if (is_badly_tracked_[ref_image]) {
     AddOverlapping(
         ref_image, range, /*min_angle=*/0, all_, all_.size(), &sources);
   }
@@ -48,14 +54,14 @@ std::vector<int> AutomaticSources::All(
 }
 
 bool AutomaticSources::SharesPoints(int image) const {
-  return selector_.NumSharedPoints(image) > 0;
+  return selector_.SharesPoints(image, 1);
 }
 
 // Behind those that share points, until max_num have a picture.
 void AutomaticSources::AddOverlapping(int ref,
                                       const std::optional<DepthRange>& range,
                                       double min_angle,
-                                      const std::vector<bool>& candidates,
+                                      const std::vector<int>& candidates,
                                       size_t max_num,
                                       std::vector<int>* sources) const {
   auto num_with_picture = static_cast<size_t>(

@@ -14,9 +14,13 @@ namespace hpm {
 // By the points that images share, as COLMAP does; behind them, where tracks
 // tell too little, those that look at the same place. Images without a picture
 // are among them: who needs pictures leaves them out.
+// May be asked by several threads at once.
 class AutomaticSources {
  public:
-  explicit AutomaticSources(const Workspace& workspace);
+  // Keeps references to all.
+  AutomaticSources(const Workspace& workspace,
+                   const TrackIndex& tracks,
+                   const CancelToken& cancel);
 
   // Best first. All that share points under at least min_angle (degrees), and
   // of others so many that max_num have a picture. `range`: the reference's
@@ -36,16 +40,18 @@ class AutomaticSources {
   void AddOverlapping(int ref,
                       const std::optional<DepthRange>& range,
                       double min_angle,
-                      const std::vector<bool>& candidates,
+                      const std::vector<int>& candidates,
                       size_t max_num,
                       std::vector<int>* sources) const;
 
   const Workspace& workspace_;
   const SourceSelector selector_;
   const OverlapSelector overlap_;
-  const std::vector<bool> all_;
+  const CancelToken& cancel_;
+  std::vector<int> all_;
   // Images that share too few points with others for a choice of sources.
-  std::vector<bool> badly_tracked_;
+  std::vector<bool> is_badly_tracked_;
+  std::vector<int> badly_tracked_;
 };
 
 // Leaves out images without a picture, and what exceeds max_num.

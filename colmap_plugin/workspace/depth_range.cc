@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
+#include <mutex>
 
 #include <fmt/format.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
 
 namespace hpm {
 namespace {
@@ -37,21 +39,28 @@ bool IsRange(const DepthRange& range) {
   return range.min > 0 && range.min < range.max && std::isfinite(range.max);
 }
 
-}  // namespace
-
-std::optional<DepthRange> RangeOfDepths(std::vector<float> depths) {
-  if (depths.empty()) return std::nullopt;
+// Reorders `depths`.
+std::optional<DepthRange> RangeIn(std::vector<float>* depths) {
+  if (depths->empty()) return std::nullopt;
   const DepthRange range =
-      Widened({kLowerFactor * DepthPercentile(0.01f, &depths),
-               kUpperFactor * DepthPercentile(0.99f, &depths)});
+      Widened({kLowerFactor * DepthPercentile(0.01f, depths),
+               kUpperFactor * DepthPercentile(0.99f, depths)});
   if (!IsRange(range)) return std::nullopt;
   return range;
 }
 
+}  // namespace
+
+std::optional<DepthRange> RangeOfDepths(std::vector<float> depths) {
+  return RangeIn(&depths);
+}
+
 DepthRanges::DepthRanges(const Workspace& workspace,
+                         const TrackIndex& tracks,
                          double given_min,
-                         double given_max) {
-  ReadTracks(workspace);
+                         double given_max,
+                         const CancelToken& cancel) {
+  ReadTracks(workspace, tracks, cancel);
   if (given_min < 0 || given_max < 0) return;
   given_ =
       Widened({static_cast<float>(given_min), static_cast<float>(given_max)});
@@ -69,23 +78,35 @@ DepthRanges::DepthRanges(const Workspace& workspace,
 
 DepthRanges::~DepthRanges() = default;
 
-void DepthRanges::ReadTracks(const Workspace& workspace) {
-  std::vector<std::vector<float>> depths(workspace.num_images());
-  for (const SparsePoint& point : workspace.model().points) {
-    for (const int image : point.track) {
-      if (!workspace.usable(image)) continue;
-      const auto z = static_cast<float>(workspace.Depth(image, point.xyz));
-      if (z > 0 && std::isfinite(z)) depths[image].push_back(z);
+void DepthRanges::ReadTracks(const Workspace& workspace,
+                             const TrackIndex& tracks,
+                             const CancelToken& cancel) {
+  const SparsePoints& points = workspace.model().points;
+  const auto num_images = static_cast<size_t>(workspace.num_images());
+  automatic_.resize(num_images);
+  std::mutex mutex;
+  tbb::enumerable_thread_specific<std::vector<float>> scratch;
+  tbb::parallel_for(size_t{0}, num_images, [&](size_t i) {
+    cancel.ThrowIfCancelled();
+    const int image = static_cast<int>(i);
+    std::vector<float>& depths = scratch.local();
+    depths.clear();
+    if (workspace.usable(image)) {
+      const auto visit = [&](size_t point, size_t count) {
+        const auto z =
+            static_cast<float>(workspace.Depth(image, points[point].xyz));
+        if (z > 0 && std::isfinite(z)) depths.insert(depths.end(), count, z);
+        return true;
+      };
+      tracks.ForEachPoint(image, TrackIndex::Reads::kPoints, visit);
     }
-  }
-  automatic_.resize(depths.size());
-  for (int image = 0; image < workspace.num_images(); ++image) {
-    if (depths[image].size() >= kEnoughPoints) {
-      automatic_[image] = RangeOfDepths(std::move(depths[image]));
-    } else {
-      too_few_.emplace(image, std::move(depths[image]));
+    if (depths.size() >= kEnoughPoints) {
+      automatic_[i] = RangeIn(&depths);
+      return;
     }
-  }
+    const std::lock_guard<std::mutex> lock(mutex);
+    too_few_.emplace(image, depths);
+  });
   estimator_ = std::make_unique<RangeEstimator>(workspace);
 }
 

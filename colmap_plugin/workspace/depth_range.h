@@ -7,7 +7,9 @@
 // wider than the given range, and what lies outside is dropped in the end.
 #pragma once
 
+#include "colmap_plugin/workspace/track_index.h"
 #include "colmap_plugin/workspace/workspace.h"
+#include "src/base/cancel.h"
 
 #include <limits>
 #include <map>
@@ -35,16 +37,22 @@ class RangeEstimator;
 class DepthRanges {
  public:
   // Automatic if given_min or given_max is negative: [0.75 P1, 1.25 P99] of the
-  // positive depths of the points whose track holds the image, one pass over
-  // all points. Throws Error(kUsage) for NaN, min > max or a zero max.
-  DepthRanges(const Workspace& workspace, double given_min, double given_max);
+  // positive depths of the points whose track holds the image, by several
+  // threads. Throws Error(kUsage) for NaN, min > max or a zero max,
+  // Error(kInterrupted).
+  DepthRanges(const Workspace& workspace,
+              const TrackIndex& tracks,
+              double given_min,
+              double given_max,
+              const CancelToken& cancel = {});
   ~DepthRanges();
 
   // What to search. Always 0 < min < max: a lower end of zero becomes 0.001 *
   // max, and equal ends are moved apart by the factors 0.75 and 1.25. A given
   // range grows to hold the automatic one, as far as kSearchedBeyond goes: it
   // is also the remedy for wrong points. Nothing if no range is given and the
-  // image is unusable, or neither points nor other views tell its range.
+  // image is unusable, or neither points nor other views tell its range. May be
+  // asked by several threads at once.
   std::optional<DepthRange> ForImage(int image) const;
 
   // Whether ForImage() has to estimate.
@@ -62,7 +70,9 @@ class DepthRanges {
   static constexpr float kSearchedBeyond = 4;
 
  private:
-  void ReadTracks(const Workspace& workspace);
+  void ReadTracks(const Workspace& workspace,
+                  const TrackIndex& tracks,
+                  const CancelToken& cancel);
 
   std::optional<DepthRange> given_;
   // Of each image: from tracks, if they are enough.

@@ -25,18 +25,18 @@ std::vector<int> OverlapSelector::Select(
     int ref_image,
     const DepthRange& range,
     double min_angle,
-    const std::vector<bool>& candidates) const {
+    const std::vector<int>& candidates) const {
   std::vector<int> images;
-  for (int image = 0; image < views_.size(); ++image) {
-    if (candidates[image] && image != ref_image && views_.usable(image))
-      images.push_back(image);
+  for (const int image : candidates) {
+    if (image != ref_image && views_.usable(image)) images.push_back(image);
   }
   if (images.empty()) return images;
   const std::vector<Eigen::Vector3d> points = PointsOf(ref_image, range);
   std::vector<std::pair<double, int>> scores;
+  std::vector<double> angles;
   for (const int image : images) {
     double score = 0;
-    std::vector<double> angles;
+    angles.clear();
     for (const Eigen::Vector3d& point : points) {
       if (!views_.Project(image, point)) continue;
       const double angle =

@@ -13,7 +13,7 @@ class OverlapSelector {
  public:
   explicit OverlapSelector(const Workspace& workspace);
 
-  // Best first, of those marked in `candidates`: the images into which most of
+  // Best first, of `candidates`, which ascend: the images into which most of
   // the reference's points project, weighted by their angles; three quarters of
   // the points as in SourceSelector::Select() for min_angle (degrees). The
   // points are the sparse points that the reference sees, or, where these are
@@ -21,7 +21,7 @@ class OverlapSelector {
   std::vector<int> Select(int ref_image,
                           const DepthRange& range,
                           double min_angle,
-                          const std::vector<bool>& candidates) const;
+                          const std::vector<int>& candidates) const;
 
  private:
   std::vector<Eigen::Vector3d> PointsOf(int image,

@@ -2,9 +2,9 @@
 
 #include "colmap_plugin/formats/image_name.h"
 #include "colmap_plugin/formats/patch_match_cfg.h"
-#include "colmap_plugin/workspace/automatic_sources.h"
 #include "colmap_plugin/workspace/cfg_check.h"
-#include "colmap_plugin/workspace/depth_range.h"
+#include "colmap_plugin/workspace/model_overview.h"
+#include "colmap_plugin/workspace/planning_progress.h"
 #include "src/base/error.h"
 #include "src/base/retries.h"
 
@@ -14,6 +14,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 namespace hpm {
 namespace {
@@ -38,19 +39,22 @@ std::string Describe(const Affected& images) {
 class ProblemReader {
  public:
   ProblemReader(const Workspace& workspace,
+                const ModelOverview& overview,
                 const ProblemOptions& options,
-                const LogSink& log)
+                const LogSink& log,
+                const CancelToken& cancel)
       : workspace_(workspace),
         options_(options),
         log_(log),
+        cancel_(cancel),
         path_(options.config_path.empty() ? workspace.PatchMatchCfgPath()
                                           : options.config_path),
-        automatic_(workspace),
-        ranges_(workspace, options.depth_min, options.depth_max) {}
+        automatic_(overview.automatic()),
+        ranges_(overview.ranges()) {}
 
   std::vector<StereoProblem> Read() {
     std::vector<bool> seen(workspace_.num_images(), false);
-    std::vector<StereoProblem> problems;
+    std::vector<Choice> choices;
     const PatchMatchCfg cfg = ReadCfg();
     CheckCfg(workspace_, path_, cfg, log_);
     for (const PatchMatchCfgEntry& entry : cfg.entries) {
@@ -69,8 +73,29 @@ class ProblemReader {
              entry.ref_name);
         continue;
       }
-      const std::optional<DepthRange> range = ranges_.ForImage(ref);
-      std::vector<int> sources = Sources(entry, ref, range);
+      choices.push_back({&entry, ref, std::nullopt, {}});
+    }
+    PlanningProgress progress(
+        "Choosing source images", choices.size(), log_, cancel_);
+    tbb::parallel_for(size_t{0}, choices.size(), [&](size_t i) {
+      Choice& choice = choices[i];
+      choice.range = ranges_.ForImage(choice.ref);
+      if (choice.entry->sources != PatchMatchCfgEntry::Sources::kList) {
+        choice.sources =
+            AutomaticSourcesOf(*choice.entry, choice.ref, choice.range);
+      }
+      progress.Count();
+    });
+
+    std::vector<StereoProblem> problems;
+    for (Choice& choice : choices) {
+      const PatchMatchCfgEntry& entry = *choice.entry;
+      const int ref = choice.ref;
+      const std::optional<DepthRange>& range = choice.range;
+      std::vector<int> sources =
+          entry.sources == PatchMatchCfgEntry::Sources::kList
+              ? ListedSources(entry, ref)
+              : std::move(choice.sources);
       if (sources.empty()) {
         without_sources_.Add(entry.ref_name);
         continue;
@@ -108,6 +133,13 @@ class ProblemReader {
   }
 
  private:
+  struct Choice {
+    const PatchMatchCfgEntry* entry;
+    int ref;
+    std::optional<DepthRange> range;
+    std::vector<int> sources;  // where they are not listed
+  };
+
   PatchMatchCfg ReadCfg() const {
     if (!Exists(path_)) {
       throw Error(ErrorCode::kBadInput,
@@ -223,21 +255,16 @@ class ProblemReader {
 
   // With images that have no picture; for "__auto__, N" so many that N have
   // one.
-  std::vector<int> Sources(const PatchMatchCfgEntry& entry,
-                           int ref,
-                           const std::optional<DepthRange>& range) const {
-    switch (entry.sources) {
-      case PatchMatchCfgEntry::Sources::kAuto:
-        return automatic_.Best(ref,
-                               range,
-                               options_.min_triangulation_angle,
-                               std::min(MostAutomatic(entry), MaxNumSources()));
-      case PatchMatchCfgEntry::Sources::kAll:
-        return automatic_.All(ref, range);
-      case PatchMatchCfgEntry::Sources::kList:
-        break;
-    }
-    return ListedSources(entry, ref);
+  std::vector<int> AutomaticSourcesOf(
+      const PatchMatchCfgEntry& entry,
+      int ref,
+      const std::optional<DepthRange>& range) const {
+    if (entry.sources == PatchMatchCfgEntry::Sources::kAll)
+      return automatic_.All(ref, range);
+    return automatic_.Best(ref,
+                           range,
+                           options_.min_triangulation_angle,
+                           std::min(MostAutomatic(entry), MaxNumSources()));
   }
 
   std::vector<int> ListedSources(const PatchMatchCfgEntry& entry,
@@ -265,9 +292,10 @@ class ProblemReader {
   const Workspace& workspace_;
   const ProblemOptions& options_;
   const LogSink& log_;
+  const CancelToken& cancel_;
   const std::filesystem::path path_;
-  const AutomaticSources automatic_;
-  const DepthRanges ranges_;
+  const AutomaticSources& automatic_;
+  const DepthRanges& ranges_;
   int num_cut_ = 0;
   Affected without_sources_;
   Affected without_range_;
@@ -283,9 +311,20 @@ bool CanBeComputed(const Workspace& workspace, const StereoProblem& problem) {
 }
 
 std::vector<StereoProblem> ReadProblems(const Workspace& workspace,
+                                        const ModelOverview& overview,
+                                        const ProblemOptions& options,
+                                        const LogSink& log,
+                                        const CancelToken& cancel) {
+  return ProblemReader(workspace, overview, options, log, cancel).Read();
+}
+
+std::vector<StereoProblem> ReadProblems(const Workspace& workspace,
                                         const ProblemOptions& options,
                                         const LogSink& log) {
-  return ProblemReader(workspace, options, log).Read();
+  const CancelToken never;
+  const ModelOverview overview(
+      workspace, options.depth_min, options.depth_max, never);
+  return ReadProblems(workspace, overview, options, log, never);
 }
 
 }  // namespace hpm

@@ -2,12 +2,15 @@
 #pragma once
 
 #include "colmap_plugin/workspace/depth_range.h"
+#include "src/base/cancel.h"
 
 #include <filesystem>
 #include <limits>
 #include <vector>
 
 namespace hpm {
+
+class ModelOverview;
 
 struct StereoProblem {
   int ref_image = -1;           // image index
@@ -39,8 +42,16 @@ bool CanBeComputed(const Workspace& workspace, const StereoProblem& problem);
 // first entry). Images without any source or of unknown depth range are skipped
 // with a warning, and another one says if fusion will find nothing in common
 // between the images; those that have no picture, or whose sources all have
-// none (src_images is empty then), are kept, as problems that fail. Throws
-// Error(kBadInput) naming cfg file and line, or if nothing is left to do.
+// none (src_images is empty then), are kept, as problems that fail. Several
+// threads choose the sources. Throws Error(kBadInput) naming cfg file and line,
+// or if nothing is left to do, Error(kInterrupted).
+// overview: of this workspace, made with the depths of `options`.
+std::vector<StereoProblem> ReadProblems(const Workspace& workspace,
+                                        const ModelOverview& overview,
+                                        const ProblemOptions& options,
+                                        const LogSink& log,
+                                        const CancelToken& cancel);
+// For those who ask once.
 std::vector<StereoProblem> ReadProblems(const Workspace& workspace,
                                         const ProblemOptions& options,
                                         const LogSink& log);

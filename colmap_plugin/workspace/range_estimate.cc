@@ -65,13 +65,17 @@ std::vector<float> RangeEstimator::SeenDepths(int image) const {
 }
 
 std::optional<DepthRange> RangeEstimator::RangeOfSeenPoints(int image) const {
-  const auto [entry, is_new] = seen_ranges_.try_emplace(image);
-  if (is_new) {
-    std::vector<float> depths = SeenDepths(image);
-    if (depths.size() >= kEnoughPoints)
-      entry->second = RangeOfDepths(std::move(depths));
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const auto entry = seen_ranges_.find(image);
+    if (entry != seen_ranges_.end()) return entry->second;
   }
-  return entry->second;
+  // Whoever asks meanwhile finds the same.
+  std::optional<DepthRange> range;
+  std::vector<float> depths = SeenDepths(image);
+  if (depths.size() >= kEnoughPoints) range = RangeOfDepths(std::move(depths));
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return seen_ranges_.emplace(image, range).first->second;
 }
 
 // From near to far; of many, at most kMaxOthers of all distances.

@@ -5,11 +5,13 @@
 #include "colmap_plugin/workspace/seen_points.h"
 
 #include <map>
+#include <mutex>
 #include <optional>
 #include <vector>
 
 namespace hpm {
 
+// May be asked by several threads at once.
 class RangeEstimator {
  public:
   explicit RangeEstimator(const Workspace& workspace);
@@ -39,6 +41,7 @@ class RangeEstimator {
   const ModelViews views_;
   const SeenPoints seen_;
   // Of images that were asked for as neighbours.
+  mutable std::mutex mutex_;
   mutable std::map<int, std::optional<DepthRange>> seen_ranges_;
 };
 

@@ -20,7 +20,7 @@ constexpr size_t kFrontShare = 10;
 
 SeenPoints::SeenPoints(const Workspace& workspace, const ModelViews& views)
     : views_(views) {
-  const std::vector<SparsePoint>& points = workspace.model().points;
+  const SparsePoints& points = workspace.model().points;
   const size_t max_points =
       std::clamp(kMaxProjections / (workspace.model().images.size() + 1),
                  kMinPoints,

@@ -25,11 +25,16 @@ double SamplingRatio(const Camera& ref,
   };
   const double focal_ratio = std::sqrt(static_cast<double>(src.fx) * src.fy /
                                        (static_cast<double>(ref.fx) * ref.fy));
+  // Asked of every source in every stage, so roots are taken once.
+  float depths[kNumDepths];
+  for (int k = 0; k < kNumDepths; ++k) {
+    depths[k] =
+        depth_min * std::pow(depth_max / depth_min, middle(k, kNumDepths));
+  }
   std::vector<double> ratios;
+  ratios.reserve(kNumAcross * kNumAcross * kNumDepths);
   for (int i = 0; i < kNumAcross * kNumAcross * kNumDepths; ++i) {
-    const float depth =
-        depth_min * std::pow(depth_max / depth_min,
-                             middle(i / (kNumAcross * kNumAcross), kNumDepths));
+    const float depth = depths[i / (kNumAcross * kNumAcross)];
     const Vec3f ray = RayAt(
         ref,
         static_cast<float>(ref.width) * middle(i % kNumAcross, kNumAcross),

@@ -1,9 +1,13 @@
 #include "colmap_plugin/workspace/source_problems.h"
 
-#include "colmap_plugin/workspace/automatic_sources.h"
+#include "colmap_plugin/workspace/model_overview.h"
+#include "colmap_plugin/workspace/planning_progress.h"
 
 #include <algorithm>
 #include <map>
+#include <utility>
+
+#include <tbb/parallel_for.h>
 
 namespace hpm {
 namespace {
@@ -27,8 +31,11 @@ DepthRange RangeOf(const std::vector<const StereoProblem*>& listed_by) {
 
 std::vector<StereoProblem> SourceProblems(
     const Workspace& workspace,
+    const ModelOverview& overview,
     const std::vector<StereoProblem>& problems,
-    const ProblemOptions& options) {
+    const ProblemOptions& options,
+    const LogSink& log,
+    const CancelToken& cancel) {
   std::map<int, std::vector<const StereoProblem*>> listed_by;
   for (const StereoProblem& problem : problems) {
     if (!CanBeComputed(workspace, problem)) continue;
@@ -38,19 +45,22 @@ std::vector<StereoProblem> SourceProblems(
     listed_by.erase(problem.ref_image);
   if (listed_by.empty()) return {};
 
-  const AutomaticSources automatic(workspace);
-  const DepthRanges ranges(workspace, options.depth_min, options.depth_max);
   const auto max_num = static_cast<size_t>(
       std::clamp(options.max_num_src_images, 0, kMaxNumSources));
-  std::vector<StereoProblem> result;
-  for (const auto& [image, references] : listed_by) {
-    StereoProblem problem;
+  const std::vector<std::pair<int, std::vector<const StereoProblem*>>> sources(
+      listed_by.begin(), listed_by.end());
+  std::vector<StereoProblem> result(sources.size());
+  PlanningProgress progress(
+      "Choosing sources of source images", sources.size(), log, cancel);
+  tbb::parallel_for(size_t{0}, sources.size(), [&](size_t i) {
+    const auto& [image, references] = sources[i];
+    StereoProblem& problem = result[i];
     problem.ref_image = image;
     problem.is_reference = false;
     const DepthRange range =
-        ranges.ForImage(image).value_or(RangeOf(references));
-    problem.src_images =
-        automatic.Best(image, range, options.min_triangulation_angle, max_num);
+        overview.ranges().ForImage(image).value_or(RangeOf(references));
+    problem.src_images = overview.automatic().Best(
+        image, range, options.min_triangulation_angle, max_num);
     TakeThoseWithPictures(workspace, max_num, &problem.src_images);
     if (problem.src_images.empty()) {
       for (const StereoProblem* reference : references)
@@ -59,8 +69,8 @@ std::vector<StereoProblem> SourceProblems(
     }
     problem.depth_min = range.min;
     problem.depth_max = range.max;
-    result.push_back(problem);
-  }
+    progress.Count();
+  });
   return result;
 }
 

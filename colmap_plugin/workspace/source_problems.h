@@ -14,9 +14,13 @@ namespace hpm {
 // chosen automatically; where there are none, they are the references that list
 // the image. Sources of theirs that are neither stay without maps: they match,
 // but have no say on consistency.
+// overview: see ReadProblems(). Throws Error(kInterrupted).
 std::vector<StereoProblem> SourceProblems(
     const Workspace& workspace,
+    const ModelOverview& overview,
     const std::vector<StereoProblem>& problems,
-    const ProblemOptions& options);
+    const ProblemOptions& options,
+    const LogSink& log,
+    const CancelToken& cancel);
 
 }  // namespace hpm

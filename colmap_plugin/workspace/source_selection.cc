@@ -2,130 +2,163 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <cstring>
 
 namespace hpm {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
+constexpr size_t kPointsBetweenLooks = 4096;
 
-// The angle a between two rays enters as min(a, pi - a), whose cosine is |cos
-// a|; it falls with the angle, so the percentile is taken of cosines and only
-// one arc cosine per image pair is needed.
-struct SharedPoint {
-  double abs_cos;
-  uint64_t weight;  // how often the reference occurs in the track
+// Whether the angle a between two rays, which enters as min(a, pi - a), is
+// below a bound. Its cosine |cos a| falls with the angle, so no arc cosine is
+// needed, and, where rounding cannot matter, no root.
+class AngleBound {
+ public:
+  explicit AngleBound(double min_angle)
+      : max_cos_(LargestCosOf(static_cast<float>(min_angle * kPi / 180))),
+        squared_max_cos_(max_cos_ * max_cos_) {}
+
+  bool IsBelow(const Eigen::Vector3d& ray1,
+               double squared_length1,
+               const Eigen::Vector3d& ray2) const {
+    constexpr double kSure = 1e-9;
+    constexpr double kTiny = 1e-280;
+    const double squared_lengths = squared_length1 * ray2.squaredNorm();
+    const double dot = ray1.dot(ray2);
+    const double difference = dot * dot - squared_max_cos_ * squared_lengths;
+    if (max_cos_ >= 0 && squared_lengths > kTiny &&
+        std::abs(difference) > kSure * squared_lengths) {
+      return difference > 0;
+    }
+    const double lengths = std::sqrt(squared_lengths);
+    const double abs_cos =
+        lengths > 0 ? std::min(1.0, std::abs(dot) / lengths) : 1;
+    return abs_cos > max_cos_;
+  }
+
+ private:
+  // The largest number in 0 ... 1 whose arc cosine, as a float, is no less;
+  // -1 if there is none. Positive doubles are in the order of their bits.
+  static double LargestCosOf(float angle) {
+    const auto is_enough = [angle](uint64_t bits) {
+      return static_cast<float>(std::acos(FromBits(bits))) >= angle;
+    };
+    uint64_t enough = 0, too_much = BitsOf(1.0) + 1;
+    if (!is_enough(enough)) return -1;
+    while (enough + 1 < too_much) {
+      const uint64_t middle = enough + (too_much - enough) / 2;
+      (is_enough(middle) ? enough : too_much) = middle;
+    }
+    return FromBits(enough);
+  }
+
+  static double FromBits(uint64_t bits) {
+    double value;
+    std::memcpy(&value, &bits, sizeof(value));
+    return value;
+  }
+
+  static uint64_t BitsOf(double value) {
+    uint64_t bits;
+    std::memcpy(&bits, &value, sizeof(bits));
+    return bits;
+  }
+
+  double max_cos_;
+  double squared_max_cos_;
 };
 
-double AbsCosOfAngle(const Eigen::Vector3d& point,
-                     const Eigen::Vector3d& center1,
-                     const Eigen::Vector3d& center2) {
-  const Eigen::Vector3d ray1 = center1 - point;
-  const Eigen::Vector3d ray2 = center2 - point;
-  const double length_product =
-      std::sqrt(ray1.squaredNorm() * ray2.squaredNorm());
-  if (!(length_product > 0)) return 1;
-  return std::min(1.0, std::abs(ray1.dot(ray2)) / length_product);
+bool IsWideEnough(const SourceCandidate& candidate) {
+  const auto rank = static_cast<uint64_t>(
+      std::round(0.75 * static_cast<double>(candidate.num_shared - 1)));
+  return candidate.num_narrow <= rank;
 }
 
-// Nearest rank, as COLMAP 3.8: element round(0.75 (n - 1)) of the n ascending
-// angles.
-float AnglePercentile(uint64_t num_shared, std::vector<SharedPoint>* shared) {
-  const auto larger_angle_last = [](const SharedPoint& a,
-                                    const SharedPoint& b) {
-    return a.abs_cos > b.abs_cos;
-  };
-  const auto rank = static_cast<uint64_t>(
-      std::round(0.75 * static_cast<double>(num_shared - 1)));
-  auto it = shared->begin();
-  if (num_shared == shared->size()) {
-    it += static_cast<std::ptrdiff_t>(rank);
-    std::nth_element(shared->begin(), it, shared->end(), larger_angle_last);
-  } else {
-    std::sort(shared->begin(), shared->end(), larger_angle_last);
-    uint64_t num_before = it->weight;
-    while (num_before <= rank && std::next(it) != shared->end())
-      num_before += (++it)->weight;
-  }
-  return static_cast<float>(std::acos(it->abs_cos));
+// As COLMAP, which holds points as floats.
+bool IsFinite(const SparsePoint& point) {
+  return point.xyz.cast<float>().allFinite();
 }
 
 }  // namespace
 
-SourceSelector::SourceSelector(const Workspace& workspace)
-    : workspace_(workspace), begin_(workspace.num_images() + 1, 0) {
-  const std::vector<SparsePoint>& points = workspace.model().points;
-  std::vector<size_t> last_point(workspace.num_images(), points.size());
-  const auto for_each_image_of_point = [&](const auto& visit) {
-    std::fill(last_point.begin(), last_point.end(), points.size());
-    for (size_t point = 0; point < points.size(); ++point) {
-      if (!points[point].xyz.cast<float>().allFinite()) continue;
-      for (const int image : points[point].track) {
-        if (last_point[image] == point) continue;
-        last_point[image] = point;
-        visit(image, static_cast<uint32_t>(point));
-      }
-    }
-  };
-  for_each_image_of_point([&](int image, uint32_t) { ++begin_[image + 1]; });
-  for (size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
-  points_.resize(begin_.back());
-  std::vector<size_t> end(begin_.begin(), begin_.end() - 1);
-  for_each_image_of_point(
-      [&](int image, uint32_t point) { points_[end[image]++] = point; });
-}
+SourceSelector::SourceSelector(const Workspace& workspace,
+                               const TrackIndex& tracks)
+    : workspace_(workspace),
+      tracks_(tracks),
+      scratch_(Scratch(static_cast<size_t>(workspace.num_images()))) {}
 
-std::vector<SourceCandidate> SourceSelector::Candidates(int ref_image) const {
+std::vector<SourceCandidate> SourceSelector::Candidates(
+    int ref_image, double min_angle, const CancelToken& cancel) const {
   std::vector<SourceCandidate> candidates;
   if (!workspace_.usable(ref_image)) return candidates;
-  std::vector<std::vector<SharedPoint>> shared(workspace_.num_images());
-  std::vector<uint64_t> num_shared(workspace_.num_images(), 0);
-  for (size_t k = begin_[ref_image]; k < begin_[ref_image + 1]; ++k) {
-    const SparsePoint& point = workspace_.model().points[points_[k]];
-    const auto weight = static_cast<uint64_t>(
-        std::count(point.track.begin(), point.track.end(), ref_image));
+  const SparsePoints& points = workspace_.model().points;
+  const AngleBound bound(min_angle);
+  const Eigen::Vector3d ref_center = workspace_.Center(ref_image);
+  Scratch& shared = scratch_.local();
+  std::vector<int> images;
+  size_t num_points = 0;
+  const auto visit = [&](size_t i, uint64_t count) {
+    if (++num_points % kPointsBetweenLooks == 0 && cancel.cancelled())
+      return false;
+    const SparsePoint point = points[i];
+    if (!IsFinite(point)) return true;
+    const Eigen::Vector3d ref_ray = ref_center - point.xyz;
+    const double squared_length = ref_ray.squaredNorm();
     for (const int image : point.track) {
-      if (image == ref_image || !workspace_.usable(image)) continue;
-      shared[image].push_back({AbsCosOfAngle(point.xyz,
-                                             workspace_.Center(ref_image),
-                                             workspace_.Center(image)),
-                               weight});
-      num_shared[image] += weight;
+      if (image == ref_image) continue;
+      SourceCandidate& candidate = shared[static_cast<size_t>(image)];
+      if (candidate.num_shared == 0) images.push_back(image);
+      candidate.num_shared += count;
+      const Eigen::Vector3d ray = workspace_.Center(image) - point.xyz;
+      if (bound.IsBelow(ref_ray, squared_length, ray))
+        candidate.num_narrow += count;
     }
+    return true;
+  };
+  tracks_.ForEachPoint(ref_image, TrackIndex::Reads::kTracks, visit);
+  for (const int image : images) {
+    SourceCandidate& candidate = shared[static_cast<size_t>(image)];
+    candidate.image = image;
+    if (workspace_.usable(image)) candidates.push_back(candidate);
+    candidate = {};
   }
-  for (int image = 0; image < workspace_.num_images(); ++image) {
-    if (shared[image].empty()) continue;
-    candidates.push_back({image,
-                          num_shared[image],
-                          AnglePercentile(num_shared[image], &shared[image])});
-  }
-  std::stable_sort(candidates.begin(),
-                   candidates.end(),
-                   [](const SourceCandidate& a, const SourceCandidate& b) {
-                     return a.num_shared > b.num_shared;
-                   });
+  cancel.ThrowIfCancelled();
+  std::sort(candidates.begin(),
+            candidates.end(),
+            [](const SourceCandidate& a, const SourceCandidate& b) {
+              return a.num_shared != b.num_shared ? a.num_shared > b.num_shared
+                                                  : a.image < b.image;
+            });
   return candidates;
 }
 
-size_t SourceSelector::NumSharedPoints(int ref_image) const {
+bool SourceSelector::SharesPoints(int image, size_t num_points) const {
+  const SparsePoints& points = workspace_.model().points;
   size_t num_shared = 0;
-  for (size_t k = begin_[ref_image]; k < begin_[ref_image + 1]; ++k) {
-    const std::vector<int>& track = workspace_.model().points[points_[k]].track;
-    num_shared += std::any_of(track.begin(), track.end(), [&](int image) {
-      return image != ref_image && workspace_.usable(image);
-    });
-  }
-  return num_shared;
+  const auto visit = [&](size_t i, size_t) {
+    if (num_shared == num_points) return false;
+    const SparsePoint point = points[i];
+    num_shared +=
+        IsFinite(point) &&
+        std::any_of(point.track.begin(), point.track.end(), [&](int other) {
+          return other != image && workspace_.usable(other);
+        });
+    return true;
+  };
+  tracks_.ForEachPoint(image, TrackIndex::Reads::kTracks, visit);
+  return num_shared >= num_points;
 }
 
 std::vector<int> SourceSelector::Select(int ref_image,
                                         double min_angle,
-                                        int max_num) const {
-  const auto min_radians = static_cast<float>(min_angle * kPi / 180);
+                                        int max_num,
+                                        const CancelToken& cancel) const {
   std::vector<int> images;
-  for (const SourceCandidate& candidate : Candidates(ref_image)) {
+  for (const SourceCandidate& candidate :
+       Candidates(ref_image, min_angle, cancel)) {
     if (max_num >= 0 && images.size() >= static_cast<size_t>(max_num)) break;
-    if (candidate.angle >= min_radians) images.push_back(candidate.image);
+    if (IsWideEnough(candidate)) images.push_back(candidate.image);
   }
   return images;
 }

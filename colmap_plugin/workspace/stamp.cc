@@ -58,11 +58,13 @@ void WriteStamp(const std::filesystem::path& state_path,
   json["files"] = nlohmann::json::object();
   for (const auto& [kind, file] : stamp.files)
     json["files"][kind] = ToJson(file);
+  if (stamp.unsynced_since) json["unsynced_since"] = *stamp.unsynced_since;
   // No newline at the end: the closing brace is the last byte, so every proper
   // prefix of a stamp is recognised as damaged.
   WriteFileAtomically(
       StampPath(state_path, image_name, stage),
-      json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+      json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace),
+      Durability::kProcess);
 }
 
 void RemoveStamp(const std::filesystem::path& state_path,
@@ -100,7 +102,11 @@ std::optional<Stamp> ReadStamp(const std::filesystem::path& state_path,
     if (!published) return std::nullopt;
     stamp.files[kind] = *published;
   }
-  for (const char* ours : {"version", "fingerprint", "files"}) json.erase(ours);
+  const auto unsynced = json.find("unsynced_since");
+  if (unsynced != json.end())
+    stamp.unsynced_since = unsynced->is_string() ? *unsynced : "";
+  for (const char* ours : {"version", "fingerprint", "files", "unsynced_since"})
+    json.erase(ours);
   stamp.statistics = std::move(json);
   return stamp;
 }

@@ -2,7 +2,8 @@
 // from the present inputs, and are still as they were made:
 // stereo/hpm_mvs/stamps/<stage>/<image name>.json, written after the maps,
 // holds the fingerprint they were made with, what their files are like, and
-// statistics for whoever is curious.
+// statistics for whoever is curious. A power cut may take a stamp, and then its
+// maps are made again.
 #pragma once
 
 #include "colmap_plugin/formats/published_file.h"
@@ -20,7 +21,11 @@ struct Stamp {
   std::string fingerprint;
   std::map<std::string, PublishedFile> files;  // "depth", "normal", "graph"
   // An object (or null); its members stand beside the others.
-  nlohmann::json statistics;
+  nlohmann::json statistics = nullptr;
+  // Of maps that were not synced to the disk: the running kernel (BootId()). On
+  // any other, a power cut may lie between, and length and time do not tell
+  // whether the bytes are there.
+  std::optional<std::string> unsynced_since;
 };
 
 // Throws Error(kBadInput) for an image name that is not a path inside the
@@ -29,7 +34,7 @@ std::filesystem::path StampPath(const std::filesystem::path& state_path,
                                 const std::string& image_name,
                                 const std::string& stage);
 
-// Atomic; throws as WriteFileAtomically does.
+// Atomic; throws as WriteFileAtomically does. Not synced: the maps are, before.
 void WriteStamp(const std::filesystem::path& state_path,
                 const std::string& image_name,
                 const std::string& stage,

@@ -3,6 +3,7 @@
 #include "colmap_plugin/formats/image_name.h"
 #include "colmap_plugin/formats/pmvs.h"
 #include "colmap_plugin/workspace/image_files.h"
+#include "colmap_plugin/workspace/planning_progress.h"
 #include "colmap_plugin/workspace/working_camera.h"
 #include "src/base/error.h"
 #include "src/base/retries.h"
@@ -83,17 +84,19 @@ Eigen::Vector3d CenterOf(const SparseImage& image) {
 
 }  // namespace
 
-Workspace::Workspace(const WorkspaceOptions& options, const LogSink& log)
+Workspace::Workspace(const WorkspaceOptions& options,
+                     const LogSink& log,
+                     const CancelToken& cancel)
     : options_(options), is_pmvs_(IsPmvs(options)) {
   if (is_pmvs_) {
     ReadPmvs();
   } else {
     CheckFolder();
-    model_ = ReadSparseModel(options_.path / "sparse", log);
+    model_ = ReadSparseModel(options_.path / "sparse", log, cancel);
     ReportLeftOut(model_, log);
   }
   CheckNames();
-  MakeCameras(log);
+  MakeCameras(log, cancel);
   FindMasks(log);
 }
 
@@ -199,12 +202,15 @@ void Workspace::CheckNames() {
     index_of_name_.emplace(WithSlashes(ImageName(i)), i);
 }
 
-void Workspace::MakeCameras(const LogSink& log) {
+void Workspace::MakeCameras(const LogSink& log, const CancelToken& cancel) {
   ImageFault backslashes, missing, unreadable, other_size, other_proportions,
       far_larger;
   std::map<std::string, ImageFault> bad_cameras;  // by reason
   std::string why_not;
+  PlanningProgress progress(
+      "Looking at image files", model_.images.size(), log, cancel);
   for (int i = 0; i < num_images(); ++i) {
+    progress.Count();
     const SparseImage& image = model_.images[i];
     const SparseCamera& sparse_camera = model_.cameras.at(image.camera_id);
     const ImageFile file = FindImageFile(ImageFolder(), image.name);

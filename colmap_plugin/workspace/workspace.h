@@ -4,6 +4,7 @@
 
 #include "colmap_plugin/formats/sparse_model.h"
 #include "colmap_plugin/workspace/image_size.h"
+#include "src/base/cancel.h"
 #include "src/base/log.h"
 #include "src/core/camera.h"
 #include "src/image/load_image.h"
@@ -40,8 +41,10 @@ class Workspace {
   // and fusion.cfg from the option file. Throws Error(kBadInput) naming the
   // missing or damaged file, or if no image is usable or has a picture, or for
   // masks that are not the images' or of another size;
-  // Error(kUsage) for an unknown format.
-  Workspace(const WorkspaceOptions& options, const LogSink& log);
+  // Error(kUsage) for an unknown format, Error(kInterrupted).
+  Workspace(const WorkspaceOptions& options,
+            const LogSink& log,
+            const CancelToken& cancel = {});
 
   int num_images() const { return static_cast<int>(model_.images.size()); }
   const SparseModel& model() const { return model_; }
@@ -112,7 +115,7 @@ class Workspace {
   void CheckFolder() const;
   void ReadPmvs();
   void CheckNames();
-  void MakeCameras(const LogSink& log);
+  void MakeCameras(const LogSink& log, const CancelToken& cancel);
   void FindMasks(const LogSink& log);
   std::filesystem::path ImageFolder() const;
 

@@ -4,6 +4,7 @@ import os
 import resource
 import shutil
 import signal
+import struct
 import subprocess
 import time
 import unittest
@@ -35,6 +36,38 @@ class Signals(CliTest):
 
     def test_sighup_stops_within_two_seconds_with_129(self):
         self.assert_stops(signal.SIGHUP, 129)
+
+
+def write_many_points(workspace, track=12):
+    """A million points, in the tracks of all four images."""
+    count = 1 << 20
+    record = struct.pack("<Q3d3BdQ", 0, 0, 0, 5, 0, 0, 0, 0, track)
+    record += b"".join(struct.pack("<II", 1 + i % 4, 0) for i in range(track))
+    points = bytearray(record * count)
+    size = len(record)
+    points[0::size] = bytes(range(256)) * (count >> 8)
+    points[1::size] = b"".join(bytes([i]) * 256 for i in range(256)) * (count >> 16)
+    points[2::size] = b"".join(bytes([i]) * 65536 for i in range(count >> 16))
+    (workspace / "sparse/points3D.bin").write_bytes(struct.pack("<Q", count) + points)
+
+
+class Planning(CliTest):
+    def test_a_signal_stops_it_within_two_seconds_from_the_first_line_on(self):
+        workspace = self.workspace()
+        write_many_points(workspace)
+        for line in (b"hpm_mvs ", b"Reading workspace", b"Reading configuration"):
+            process = subprocess.Popen(
+                self.command(workspace, *SLOW), stdout=subprocess.PIPE, stderr=subprocess.STDOUT
+            )
+            self.addCleanup(process.wait)
+            self.addCleanup(process.kill)
+            self.addCleanup(process.stdout.close)
+            while line not in process.stdout.readline():
+                self.assertIsNone(process.poll())
+            begin = time.monotonic()
+            process.send_signal(signal.SIGINT)
+            self.assertEqual(process.wait(timeout=60), 130)
+            self.assertLess(time.monotonic() - begin, 2, line)
 
 
 class StandardStreams(CliTest):

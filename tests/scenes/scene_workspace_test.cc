@@ -53,7 +53,8 @@ TEST_F(SceneWorkspace, SparseModelHoldsTheCamerasOfTheScene) {
 TEST_F(SceneWorkspace, SparsePointsLieOnTheSurfaceInEveryImageOfTheirTrack) {
   const SparseModel model = ReadSparseModel(folder_ / "sparse");
   ASSERT_GT(model.points.size(), 300u);
-  for (const SparsePoint& point : model.points) {
+  for (size_t i = 0; i < model.points.size(); ++i) {
+    const SparsePoint point = model.points[i];
     ASSERT_GE(point.track.size(), 2u);
     for (const int index : point.track) {
       const Camera& camera = scene_->cameras[index];

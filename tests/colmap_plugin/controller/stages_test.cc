@@ -5,6 +5,7 @@
 #include "colmap_plugin/options/method_options.h"
 #include "colmap_plugin/workspace/stamp.h"
 #include "src/base/error.h"
+#include "src/base/platform/processes.h"
 #include "tests/colmap_plugin/controller/scene_workspace.h"
 
 #include <chrono>
@@ -271,6 +272,32 @@ TEST_F(StagePlanTest, TouchedMapsAreKeptAndStampedWithTheirNewTime) {
       ReadStamp(workspace_.StatePath(), workspace_.ImageName(2), "geometric");
   ASSERT_TRUE(stamp);
   EXPECT_EQ(stamp->files.at("depth").state, StateOf(depth));
+}
+
+// Inner maps are not synced to the disk: after a power cut a file of the right
+// length and time may hold anything.
+TEST_F(StagePlanTest, UnsyncedMapsAreReadAfterTheMachineWasStartedAnew) {
+  for (const auto& [boot, is_believed] :
+       {std::pair<std::string, bool>{BootId(), !BootId().empty()},
+        {"another", false},
+        {"", false}}) {
+    FinishAll(false);
+    const std::filesystem::path depth = DepthFile(0, 2);
+    const std::string& name = workspace_.ImageName(2);
+    std::optional<Stamp> stamp =
+        ReadStamp(workspace_.StatePath(), name, "photometric");
+    ASSERT_TRUE(stamp);
+    stamp->unsynced_since = boot;
+    WriteStamp(workspace_.StatePath(), name, "photometric", *stamp);
+    EXPECT_THAT(Needed(Plan(), 0), IsEmpty());
+
+    const auto time = std::filesystem::last_write_time(depth);
+    std::string bytes = ReadFile(depth);
+    bytes.replace(bytes.size() - 8, 8, 8, '\0');
+    WriteFile(depth, bytes);
+    std::filesystem::last_write_time(depth, time);
+    EXPECT_EQ(Needed(Plan(), 0).empty(), is_believed) << boot;
+  }
 }
 
 TEST_F(StagePlanTest, ComparingMapsHearsCancel) {

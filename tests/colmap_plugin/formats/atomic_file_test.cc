@@ -114,6 +114,16 @@ TEST(AtomicFile, SyncsTheFileBeforeRenamingAndTheFolderAfter) {
   EXPECT_EQ(ReadFile(folder / "f"), "0123456789");
 }
 
+TEST(AtomicFile, WhatNeedsNoSyncIsRenamedAllTheSame) {
+  const ScratchFolder folder;
+  faults = Faults();
+  faults.recording = true;
+  WriteFileAtomically(folder / "f", "0123456789", Durability::kProcess);
+  faults.recording = false;
+  EXPECT_THAT(faults.calls, testing::ElementsAre("write", "close", "rename"));
+  EXPECT_EQ(ReadFile(folder / "f"), "0123456789");
+}
+
 TEST(AtomicFile, SurvivesInterruptsAndShortWrites) {
   const ScratchFolder folder;
   EXPECT_FALSE(WriteWithFaults(folder / "f", [] {

@@ -234,7 +234,8 @@ void FlipBytes(const ModelFiles& tiny, unsigned seed) {
     WriteFile(folder / file->first, bytes);
     try {
       const SparseModel model = ReadSparseModel(folder.path());
-      for (const SparsePoint& point : model.points) {
+      for (size_t i = 0; i < model.points.size(); ++i) {
+        const SparsePoint point = model.points[i];
         for (const int index : point.track) {
           ASSERT_LT(static_cast<size_t>(index), model.images.size());
         }

@@ -16,7 +16,8 @@ TEST(DepthRange, IsCutFromTheFirstAndTheLastPercentile) {
   for (int i = 0; i < 150; ++i)
     files.AddPoint({0, 0, 1.0 + (i * 77) % 150}, {0, 1});
   const Workspace workspace = files.Open();
-  const DepthRanges ranges(workspace, -1, -1);
+  const TrackIndex tracks(workspace);
+  const DepthRanges ranges(workspace, tracks, -1, -1);
   EXPECT_FLOAT_EQ(ranges.ForImage(0)->min, 0.75f * 2);
   EXPECT_FLOAT_EQ(ranges.ForImage(0)->max, 1.25f * 149);
   EXPECT_FLOAT_EQ(ranges.ForImage(1)->min, 0.75f * 12);
@@ -30,7 +31,8 @@ TEST(DepthRange, PointsBehindTheCameraDoNotCount) {
   files.AddPoint({0, 0, -100}, {0});
   files.AddPoint({0, 0, 0}, {0});
   const Workspace workspace = files.Open();
-  const DepthRange range = DepthRanges(workspace, -1, -1).ForImage(0).value();
+  const DepthRange range =
+      DepthRanges(workspace, TrackIndex(workspace), -1, -1).ForImage(0).value();
   EXPECT_FLOAT_EQ(range.min, 3);
   EXPECT_FLOAT_EQ(range.max, 5);
 }
@@ -40,15 +42,19 @@ TEST(DepthRange, OneNegativeEndMakesBothAutomatic) {
   files.AddImage("a.jpg", {0, 0, 0});
   files.AddPoint({0, 0, 4}, {0});
   const Workspace workspace = files.Open();
-  EXPECT_FLOAT_EQ(DepthRanges(workspace, 1, -1).ForImage(0)->min, 3);
-  EXPECT_FLOAT_EQ(DepthRanges(workspace, -1, 100).ForImage(0)->max, 5);
+  EXPECT_FLOAT_EQ(
+      DepthRanges(workspace, TrackIndex(workspace), 1, -1).ForImage(0)->min, 3);
+  EXPECT_FLOAT_EQ(
+      DepthRanges(workspace, TrackIndex(workspace), -1, 100).ForImage(0)->max,
+      5);
 }
 
 TEST(DepthRange, GivenRangeHoldsForAllImagesEvenWithoutPoints) {
   TestWorkspace files;
   files.AddImage("a.jpg", {0, 0, 0});
   const Workspace workspace = files.Open();
-  const DepthRange range = DepthRanges(workspace, 2, 8).ForImage(0).value();
+  const DepthRange range =
+      DepthRanges(workspace, TrackIndex(workspace), 2, 8).ForImage(0).value();
   EXPECT_EQ(range.min, 2);
   EXPECT_EQ(range.max, 8);
 }
@@ -60,15 +66,17 @@ TEST(DepthRange, AGivenRangeIsSearchedBeyondAsFarAsThePointsGo) {
   for (size_t i = 0; i < kEnoughPoints; ++i)
     files.AddPoint({0, 0, i % 2 == 0 ? 4.0 : 8.0}, {0});
   const Workspace workspace = files.Open();
-  const DepthRanges inner(workspace, 4, 5);
+  const DepthRanges inner(workspace, TrackIndex(workspace), 4, 5);
   EXPECT_FLOAT_EQ(inner.ForImage(0)->min, 3);
   EXPECT_FLOAT_EQ(inner.ForImage(0)->max, 10);
   EXPECT_FLOAT_EQ(inner.Published().min, 4);
   EXPECT_FLOAT_EQ(inner.Published().max, 5);
-  const DepthRange apart = *DepthRanges(workspace, 1, 2).ForImage(0);
+  const DepthRange apart =
+      *DepthRanges(workspace, TrackIndex(workspace), 1, 2).ForImage(0);
   EXPECT_FLOAT_EQ(apart.min, 1);
   EXPECT_FLOAT_EQ(apart.max, 8);  // far points may be wrong: 4 times
-  const DepthRange beyond = *DepthRanges(workspace, 20, 30).ForImage(0);
+  const DepthRange beyond =
+      *DepthRanges(workspace, TrackIndex(workspace), 20, 30).ForImage(0);
   EXPECT_FLOAT_EQ(beyond.min, 5);
   EXPECT_FLOAT_EQ(beyond.max, 30);
 }
@@ -78,7 +86,8 @@ TEST(DepthRange, WithAnAutomaticRangeEverythingIsPublished) {
   files.AddImage("a.jpg", {0, 0, 0});
   files.AddPoint({0, 0, 4}, {0});
   const Workspace workspace = files.Open();
-  const DepthRange published = DepthRanges(workspace, -1, -1).Published();
+  const DepthRange published =
+      DepthRanges(workspace, TrackIndex(workspace), -1, -1).Published();
   EXPECT_EQ(published.min, 0);
   EXPECT_GT(published.max, 1e30);
 }
@@ -87,10 +96,12 @@ TEST(DepthRange, DegenerateGivenRangesAreWidened) {
   TestWorkspace files;
   files.AddImage("a.jpg", {0, 0, 0});
   const Workspace workspace = files.Open();
-  const DepthRange equal = DepthRanges(workspace, 4, 4).ForImage(0).value();
+  const DepthRange equal =
+      DepthRanges(workspace, TrackIndex(workspace), 4, 4).ForImage(0).value();
   EXPECT_FLOAT_EQ(equal.min, 3);
   EXPECT_FLOAT_EQ(equal.max, 5);
-  const DepthRange from_zero = DepthRanges(workspace, 0, 4).ForImage(0).value();
+  const DepthRange from_zero =
+      DepthRanges(workspace, TrackIndex(workspace), 0, 4).ForImage(0).value();
   EXPECT_FLOAT_EQ(from_zero.min, 0.004f);
   EXPECT_EQ(from_zero.max, 4);
 }
@@ -107,8 +118,9 @@ TEST(DepthRange, ImpossibleGivenRangesAreUsageErrors) {
       {4, nan},
       {1, std::numeric_limits<double>::infinity()}};
   for (const auto& [min, max] : bad) {
-    const auto error =
-        ErrorOf([&, a = min, b = max] { DepthRanges(workspace, a, b); });
+    const auto error = ErrorOf([&, a = min, b = max] {
+      DepthRanges(workspace, TrackIndex(workspace), a, b);
+    });
     ASSERT_TRUE(error) << min << " " << max;
     EXPECT_EQ(error->code(), ErrorCode::kUsage);
   }
@@ -120,7 +132,8 @@ TEST(DepthRange, WithoutPointsAndOtherViewsItIsUnknown) {
   files.AddImage("same_place.jpg", {0, 0, 0});
   files.AddImagePose("broken.jpg", "1 0 0 0 nan 0 0");
   const Workspace workspace = files.Open();
-  const DepthRanges ranges(workspace, -1, -1);
+  const TrackIndex tracks(workspace);
+  const DepthRanges ranges(workspace, tracks, -1, -1);
   for (const int image : {0, 1, 2}) EXPECT_FALSE(ranges.ForImage(image));
 }
 
@@ -131,7 +144,8 @@ TEST(DepthRange, EnoughTrackedPointsAreNeverEstimated) {
   for (int i = 0; i < 10; ++i) files.AddPoint({0, 0, 4}, {0});
   for (int i = 0; i < 90; ++i) files.AddPoint({0.5, 0, 8}, {1});
   const Workspace workspace = files.Open();
-  const DepthRanges ranges(workspace, -1, -1);
+  const TrackIndex tracks(workspace);
+  const DepthRanges ranges(workspace, tracks, -1, -1);
   EXPECT_FALSE(ranges.IsEstimated(0));
   EXPECT_FLOAT_EQ(ranges.ForImage(0)->max, 5);
 }
@@ -146,7 +160,8 @@ TEST(DepthRange, PointsWithoutTracksCountWhereTheyProject) {
     files.AddPoint({100, 0, 20}, {});  // beside the image
   }
   const Workspace workspace = files.Open();
-  const DepthRanges ranges(workspace, -1, -1);
+  const TrackIndex tracks(workspace);
+  const DepthRanges ranges(workspace, tracks, -1, -1);
   EXPECT_TRUE(ranges.IsEstimated(0));
   EXPECT_FLOAT_EQ(ranges.ForImage(0)->min, 3);
   EXPECT_FLOAT_EQ(ranges.ForImage(0)->max, 7.5f);
@@ -165,7 +180,8 @@ TEST(DepthRange, WhatLiesFarBehindASurfaceIsHidden) {
   }
   files.AddPoint({0, 0, 0.5}, {});
   const Workspace workspace = files.Open();
-  const DepthRange range = DepthRanges(workspace, -1, -1).ForImage(0).value();
+  const DepthRange range =
+      DepthRanges(workspace, TrackIndex(workspace), -1, -1).ForImage(0).value();
   EXPECT_FLOAT_EQ(range.min, 3);
   EXPECT_FLOAT_EQ(range.max, 5);
 }
@@ -177,7 +193,8 @@ TEST(DepthRange, AFewTrackedPointsAreWidenedByThoseThatProject) {
   files.AddPoint({0, 0, 4}, {0, 1});
   for (int i = 0; i < 20; ++i) files.AddPoint({0.1 * i, 0.5, 8}, {1});
   const Workspace workspace = files.Open();
-  const DepthRanges ranges(workspace, -1, -1);
+  const TrackIndex tracks(workspace);
+  const DepthRanges ranges(workspace, tracks, -1, -1);
   EXPECT_TRUE(ranges.IsEstimated(0));
   EXPECT_FLOAT_EQ(ranges.ForImage(0)->min, 3);
   EXPECT_FLOAT_EQ(ranges.ForImage(0)->max, 10);
@@ -192,7 +209,10 @@ TEST(DepthRange, WhereNoPointProjectsTheRangesOfTheOthersTell) {
     // At the right border of b, where a does not look.
     for (int i = 0; i < 20; ++i) files.AddPoint({8.9, 0.1 * i, 8}, track);
     const Workspace workspace = files.Open();
-    const DepthRange range = DepthRanges(workspace, -1, -1).ForImage(0).value();
+    const DepthRange range =
+        DepthRanges(workspace, TrackIndex(workspace), -1, -1)
+            .ForImage(0)
+            .value();
     EXPECT_LT(range.min, 7);
     EXPECT_GT(range.min, 3);
     EXPECT_GT(range.max, 9);
@@ -206,7 +226,8 @@ TEST(DepthRange, AFewPointsWithoutTracksAreWidenedByThePoses) {
     files.AddImage(fmt::format("{}.jpg", i), {1.0 * i, 0, 0});
   for (int i = 0; i < 3; ++i) files.AddPoint({0.1 * i, 0, 100}, {});
   const Workspace workspace = files.Open();
-  const DepthRange range = DepthRanges(workspace, -1, -1).ForImage(0).value();
+  const DepthRange range =
+      DepthRanges(workspace, TrackIndex(workspace), -1, -1).ForImage(0).value();
   EXPECT_LT(range.min, 4);
   EXPECT_FLOAT_EQ(range.max, 125);
 }
@@ -217,7 +238,8 @@ TEST(DepthRange, WithoutAnyPointsThePosesTell) {
   for (int i = 0; i < 6; ++i)
     files.AddImage(fmt::format("{}.jpg", i), {1.0 * i, 0, 0});
   const Workspace workspace = files.Open();
-  const DepthRanges ranges(workspace, -1, -1);
+  const TrackIndex tracks(workspace);
+  const DepthRanges ranges(workspace, tracks, -1, -1);
   for (int image = 0; image < 6; ++image) {
     const DepthRange range = ranges.ForImage(image).value();
     EXPECT_LT(range.min, 4) << image;
@@ -236,7 +258,10 @@ TEST(DepthRange, EstimatesDoNotSufferFarFromTheOrigin) {
     for (int i = 0; i < 20; ++i)
       files.AddPoint(origin + Eigen::Vector3d(0.01 * i, 0, 1), {});
     const Workspace workspace = files.Open();
-    const DepthRange range = DepthRanges(workspace, -1, -1).ForImage(0).value();
+    const DepthRange range =
+        DepthRanges(workspace, TrackIndex(workspace), -1, -1)
+            .ForImage(0)
+            .value();
     EXPECT_NEAR(range.min, 0.75, 1e-6);
     EXPECT_NEAR(range.max, 1.25, 1e-6);
   }

@@ -54,8 +54,10 @@ TEST(FarOrigin, RelativePosesDepthsAndAnglesAreThoseOfTheModelNearIt) {
         EXPECT_NEAR(t.y, expected.y, 1e-6);
         EXPECT_NEAR(t.z, expected.z, 1e-6);
       }
-      const DepthRange range = *DepthRanges(workspace, -1, -1).ForImage(i);
-      const DepthRange expected = *DepthRanges(near, -1, -1).ForImage(i);
+      const DepthRange range =
+          *DepthRanges(workspace, TrackIndex(workspace), -1, -1).ForImage(i);
+      const DepthRange expected =
+          *DepthRanges(near, TrackIndex(near), -1, -1).ForImage(i);
       EXPECT_NEAR(range.min, expected.min, 1e-6);
       EXPECT_NEAR(range.max, expected.max, 1e-6);
       const auto candidates = SourceSelector(workspace).Candidates(i);

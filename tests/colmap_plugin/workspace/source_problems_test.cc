@@ -1,6 +1,6 @@
 #include "colmap_plugin/workspace/source_problems.h"
 
-#include "colmap_plugin/workspace/depth_range.h"
+#include "colmap_plugin/workspace/model_overview.h"
 #include "tests/colmap_plugin/workspace/test_workspace.h"
 
 namespace hpm {
@@ -24,8 +24,15 @@ class SourceProblemsTest : public testing::Test {
                                        const ProblemOptions& options = {}) {
     files_.WriteCfg(cfg);
     const Workspace workspace = files_.Open();
-    return SourceProblems(
-        workspace, ReadProblems(workspace, options, nullptr), options);
+    const CancelToken never;
+    const ModelOverview overview(
+        workspace, options.depth_min, options.depth_max, never);
+    return SourceProblems(workspace,
+                          overview,
+                          ReadProblems(workspace, options, nullptr),
+                          options,
+                          nullptr,
+                          never);
   }
 
   TestWorkspace files_;
