@@ -68,7 +68,7 @@ class StagePlanTest : public testing::Test {
     for (const auto& path : {files.depth, files.normal}) {
       std::filesystem::create_directories(path.parent_path());
     }
-    Stamp stamp = {plan.FingerprintOf(stage, problem), {}, nullptr};
+    Stamp stamp = {plan.FingerprintOf(stage, problem), {}, nullptr, {}};
     std::vector<float> data(kWidth * kHeight, 1.0f);
     stamp.files["depth"] = WriteMap(files.depth, {kWidth, kHeight, 1, data});
     data.resize(3 * data.size(), 0.5f);

@@ -7,7 +7,7 @@ namespace {
 
 Stamp StampOf(const std::string& fingerprint,
               const nlohmann::json& statistics = nullptr) {
-  return {fingerprint, {}, statistics};
+  return {fingerprint, {}, statistics, {}};
 }
 
 std::string FingerprintIn(const std::filesystem::path& state,
