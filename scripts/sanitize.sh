@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # Builds with sanitizers and runs the tests, those of the command line included.
 # asan: addresses, leaks and undefined behaviour; tsan: races. Left out is what has a
-# compiler or flags of its own (arm, clang, fuzz, patches, install), measures quality, or
-# needs real COLMAP for long (pycolmap).
+# compiler or flags of its own (arm, clang, fuzz, patches, install, package, site), measures
+# quality, needs real COLMAP for long (pycolmap), or has to be loaded before the sanitizer
+# (faults).
 # usage: scripts/sanitize.sh asan|tsan [arguments of ctest, e.g. -R resume]
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -17,4 +18,4 @@ export ASAN_OPTIONS=allocator_may_return_null=1:detect_leaks=1
 export UBSAN_OPTIONS=print_stacktrace=1
 export TSAN_OPTIONS=halt_on_error=1:second_deadlock_stack=1
 exec ctest --test-dir "build/$preset" --output-on-failure -j2 \
-  -LE 'arm|clang|fuzz|patches|install|pycolmap' -E 'quality|scripts_test' "${@:2}"
+  -LE 'arm|clang|faults|fuzz|install|package|patches|pycolmap|site' -E 'quality|scripts_test' "${@:2}"
