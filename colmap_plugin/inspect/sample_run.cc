@@ -28,9 +28,10 @@ class ScratchWorkspace {
   // With the images and the model of another workspace, by links.
   explicit ScratchWorkspace(const fs::path& workspace) {
     std::error_code error;
-    const fs::path folder = fs::temp_directory_path(error);
+    const fs::path temporary = fs::temp_directory_path(error);
     std::random_device random;
-    const fs::path path = folder / fmt::format("hpm_mvs_plan_{:08x}", random());
+    const fs::path path =
+        temporary / fmt::format("hpm_mvs_plan_{:08x}", random());
     if (!fs::create_directory(path, error) || error) return;
     path_ = path;
     fs::permissions(path_, fs::perms::owner_all, error);

@@ -13,7 +13,7 @@
 namespace hpm {
 namespace {
 
-constexpr int kQuality = 75;
+constexpr int kQuality = 65;
 
 // JPEG files are decoded at a reduced scale, others at full size.
 int FlagsFor(const std::filesystem::path& path) {

@@ -9,7 +9,7 @@
 namespace hpm {
 
 // Longest side of a picture in pixels.
-constexpr int kThumbnailSide = 176;
+constexpr int kThumbnailSide = 144;
 
 // A map of about the size of a thumbnail: one pixel of each block. Reads only
 // the rows that it needs. Throws Error(kBadInput).

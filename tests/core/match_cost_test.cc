@@ -201,11 +201,13 @@ TEST(MatchCost, NothingMatchesWhereTheSourceShowsNothing) {
 TEST(MatchCost, ReferencePixelsThatShowNothingDoNotCount) {
   PatchShape shape = DefaultShape();
   shape.ref_has_gaps = true;
-  const auto with_gap = [](float value) {
-    return
-        [value](float u, float v) { return u < 29.5f ? value : Pattern(u, v); };
+  // Dark, so that black would count like the rest.
+  const auto dark = [](float u, float v) { return 6 + Pattern(u, v) / 50; };
+  // All that is left of column 29.5 is a gap.
+  const auto with_gap = [&](float u, float v) {
+    return u < 29.5f ? 0.0f : dark(u, v);
   };
-  const RefPatch ref = PatchOf(shape, with_gap(0), 30, 20);
+  const RefPatch ref = PatchOf(shape, with_gap, 30, 20);
   float sum = 0;
   for (int k = 0; k < kPatchSize; ++k) {
     if (shape.offset[k % kPatchAxis] < 0) {
@@ -215,15 +217,18 @@ TEST(MatchCost, ReferencePixelsThatShowNothingDoNotCount) {
   }
   EXPECT_NEAR(sum, 1, 1e-5);
   // Whatever the source shows there.
-  EXPECT_LT(MatchCost(shape, ref, Shift(30, 20), Pattern, kWidth, kHeight),
-            1e-4);
+  const auto cost = [&](const RefPatch& patch, float u) {
+    return MatchCost(shape, patch, Shift(u, 20), dark, kWidth, kHeight);
+  };
+  EXPECT_LT(cost(ref, 30), 1e-3);
   // Nothing matches a gap itself.
-  const RefPatch gap = PatchOf(shape, with_gap(0), 27, 20);
-  EXPECT_EQ(MatchCost(shape, gap, Shift(27, 20), Pattern, kWidth, kHeight),
-            kMaxCost);
+  EXPECT_EQ(cost(PatchOf(shape, with_gap, 27, 20), 27), kMaxCost);
   // Without gaps black is a value like others.
   shape.ref_has_gaps = false;
-  EXPECT_GT(PatchOf(shape, with_gap(0), 27, 20).variance, kMinVariance);
+  const RefPatch black = PatchOf(shape, with_gap, 30, 20);
+  EXPECT_GT(black.weight[0], 0);
+  EXPECT_GT(cost(black, 30), 1e-2);
+  EXPECT_LT(cost(PatchOf(shape, with_gap, 27, 20), 27), kMaxCost);
 }
 
 TEST(MatchCost, CentreOutsideTheSourceImageCostsTwo) {

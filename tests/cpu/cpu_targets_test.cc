@@ -131,7 +131,9 @@ TEST_P(EveryTarget, AgreesOnWhatIsMasked) {
   }
   EXPECT_GT(result.num_visible, 3000);
   EXPECT_LT(result.num_visible, unmasked.num_visible * 2 * 9 / 10);
-  EXPECT_LT(result.largest, kTolerance);
+  // At the edge of a gap grey values jump to 0: there a position's last digit
+  // counts for more.
+  EXPECT_LT(result.largest, 3 * kTolerance);
   // A centre exactly between a gap and a pixel may fall on either side.
   EXPECT_LE(result.num_visibility_differs, result.num_pairs / 1000);
 }
