@@ -46,7 +46,7 @@ RELEASE_PACKAGES=(
   doxygen
   codespell shellcheck
   libc++-dev libc++abi-dev
-  g++-mingw-w64-x86-64-posix wine64
+  g++-mingw-w64-x86-64-posix
 )
 
 # OpenImageIO's CMake package asks for its tools too.
