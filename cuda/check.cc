@@ -1,5 +1,6 @@
 #include "cuda/check.h"
 
+#include "src/base/remedies.h"
 #include "src/engine/gpu_error.h"
 
 #include <string>
@@ -11,14 +12,14 @@ void CheckCuda(cudaError_t status, const char* doing) {
   cudaGetLastError();  // forget it where it does not stick
   if (status == cudaErrorMemoryAllocation) {
     throw GpuError(ErrorCode::kOutOfResources,
-                   std::string("GPU: out of memory while ") + doing +
-                       "; set a smaller --PatchMatchStereo.max_image_size, "
-                       "--Hpm.gpu_images 1 or --Hpm.device cpu");
+                   std::string("GPU: out of memory while ") + doing + "; use " +
+                       kSmallerImages + ", " + kFewerImagesAtOnce + ", or " +
+                       kComputeOnCpu);
   }
   throw GpuError(ErrorCode::kDevice,
                  std::string("GPU: ") + cudaGetErrorString(status) + " (" +
-                     cudaGetErrorName(status) + ") while " + doing +
-                     "; set --Hpm.device cpu to compute on the CPU");
+                     cudaGetErrorName(status) + ") while " + doing + "; " +
+                     kComputeOnCpu);
 }
 
 }  // namespace hpm

@@ -40,7 +40,7 @@ class Judge {
                           int row) const {
     const auto x = static_cast<float>(col), y = static_cast<float>(row);
     const Vec3f ray = RayAt(ref_, x, y);
-    const Vec3f point = (-plane.distance / Dot(plane.normal, ray)) * ray;
+    const Vec3f point = DepthOnRay(plane, ray) * ray;
     const Sight sight = SightOf(point, plane.normal, centers_[j], max_cos_);
     if (sight == Sight::kBack) return FilterCriterion::kFacing;
     if (sight == Sight::kSmallAngle) return FilterCriterion::kAngle;

@@ -1,6 +1,7 @@
 #include "colmap_plugin/tool/run_command.h"
 
 #include "colmap_plugin/tool/help.h"
+#include "colmap_plugin/tool/name_options.h"
 #include "colmap_plugin/tool/parse_command.h"
 #include "colmap_plugin/tool/parse_options.h"
 #include "colmap_plugin/tool/run_summary.h"
@@ -33,7 +34,7 @@ int RunAndReport(const ControllerOptions& options,
                  const ToolEnvironment& tool,
                  ProgressLine* progress) {
   const LogSink log = [progress](LogLevel level, const std::string& message) {
-    progress->Log(level, message);
+    progress->Log(level, NameOptions(message));
   };
   const RunSummary summary = tool.run_stereo(
       options,
@@ -78,7 +79,7 @@ int Guarded(const ToolEnvironment& tool,
       return fail(error.code(),
                   "interrupted; give the same command again to go on");
     }
-    return fail(error.code(), error.what());
+    return fail(error.code(), NameOptions(error.what()));
   } catch (const std::bad_alloc&) {
     return fail(ErrorCode::kOutOfResources,
                 "out of memory; lower --PatchMatchStereo.cache_size (GiB) or "
@@ -121,7 +122,7 @@ int RunCommand(const Command& command,
         parsed.run.options.controller,
         parsed.own,
         [progress](LogLevel level, const std::string& message) {
-          progress->Log(level, message);
+          progress->Log(level, NameOptions(message));
         },
         [&tool](const std::string& text) { return Print(text, tool); },
         tool.cancel};

@@ -3,7 +3,6 @@
 // section 3.2).
 #pragma once
 
-#include "src/core/pixel_state.h"
 #include "src/core/visit.h"
 
 #include <math.h>
@@ -47,25 +46,22 @@ HPM_HD uint32_t MostVoted(uint32_t views,
 // neighbours trusted, and one more in turn, so that a view can come back; with
 // `few_views` the most voted of those that the pixel has just trusted. One at
 // least.
-HPM_HD void ChooseViews(const VisitParams& params,
-                        const SamplingPattern& pattern,
-                        const PixelState& state,
+HPM_HD void ChooseViews(const PixelVisit& visit,
                         float draw,
-                        int col,
-                        int row,
                         Candidates* candidates) {
-  uint32_t trusted = params.ask_all_views
-                         ? AllViews(params.num_views)
-                         : state.masks[row * state.width + col];
+  const VisitParams& params = visit.params;
+  const PixelState& state = visit.state;
+  uint32_t trusted =
+      params.ask_all_views ? AllViews(params.num_views) : state.masks[visit.at];
   uint32_t once = trusted;
   uint32_t votes[kMaxViews] = {};
   int num_voters = 0;
-  const int d = pattern.mask_distance;
+  const int d = visit.pattern.mask_distance;
   const int dcol[4] = {0, 0, -d, d};
   const int drow[4] = {-d, d, 0, 0};
   for (int b = 0; b < 4; ++b) {
-    const int c = col + dcol[b];
-    const int r = row + drow[b];
+    const int c = visit.col + dcol[b];
+    const int r = visit.row + drow[b];
     if (c < 0 || r < 0 || c >= state.width || r >= state.height) continue;
     const uint32_t mask = state.masks[r * state.width + c];
     for (int j = 0; j < params.num_views; ++j) votes[j] += mask >> j & 1;
@@ -133,20 +129,17 @@ HPM_HD uint64_t CostKey(float cost, int k) {
 
 // Best sample among offsets [begin, end) of a region, -1 if none is inside the
 // image or better than *best_cost.
-HPM_HD int BestSample(const SamplingPattern& pattern,
-                      const PixelState& state,
-                      int region,
-                      int begin,
-                      int end,
-                      int col,
-                      int row,
-                      float* best_cost) {
+HPM_HD int BestSample(
+    const PixelVisit& visit, int region, int begin, int end, float* best_cost) {
+  const PixelState& state = visit.state;
+  const short* dcol = visit.pattern.dcol[region];
+  const short* drow = visit.pattern.drow[region];
   // The smallest key needs no branch; nothing could predict one.
   const uint64_t none = CostKey(*best_cost, 0);
   uint64_t best = none;
   for (int k = begin; k < end; ++k) {
-    const int c = col + pattern.dcol[region][k];
-    const int r = row + pattern.drow[region][k];
+    const int c = visit.col + dcol[k];
+    const int r = visit.row + drow[k];
     // The V of the local pattern alternates between its arms: one of them may
     // leave the image before the other.
     if (static_cast<unsigned>(c) >= static_cast<unsigned>(state.width) ||
@@ -158,26 +151,25 @@ HPM_HD int BestSample(const SamplingPattern& pattern,
   }
   if (best == none) return -1;
   const int k = static_cast<int>(best & 0xffffffffu);
-  const int at = (row + pattern.drow[region][k]) * state.width + col +
-                 pattern.dcol[region][k];
+  const int at = (visit.row + drow[k]) * state.width + visit.col + dcol[k];
   *best_cost = state.costs[at];
   return at;
 }
 
 // tau(t_iter, t_ext) of the paper: a cost below it speaks for a candidate.
-HPM_HD float ConvincingCost(int iteration, int extension) {
-  return 0.8f *
-         expf(-static_cast<float>(iteration * iteration * (3 - extension)) /
-              90.0f);
+HPM_HD float Tau(int iteration, int extension) {
+  return 0.8f * expf(-static_cast<float>(iteration * iteration *
+                                         (kMaxExtensions - extension)) /
+                     90.0f);
 }
 
 // The paper's test whether a region must grow: fewer than one view below the
 // threshold, or more than two views above the bad cost.
-HPM_HD bool MustExtend(const float* costs, int num_views, float good_cost) {
+HPM_HD bool MustExtend(const float* costs, int num_views, float tau) {
   constexpr int kNumGood = 1, kNumBad = 2;
   int num_good = 0, num_bad = 0;
   for (int j = 0; j < num_views; ++j) {
-    num_good += costs[j] < good_cost;
+    num_good += costs[j] < tau;
     num_bad += costs[j] > kBadCost;
   }
   return num_good < kNumGood || num_bad > kNumBad;
@@ -200,99 +192,155 @@ HPM_HD uint32_t CheapestRegions(const float* costs,
   return exists;
 }
 
-// `draw`: random, in [0, 1).
-template <class Cost>
-HPM_HD void CollectCandidates(const VisitParams& params,
-                              const SamplingPattern& pattern,
-                              const PixelState& state,
-                              const Cost& cost,
-                              int iteration,
-                              float draw,
-                              int col,
-                              int row,
-                              Candidates* candidates) {
-  ChooseViews(params, pattern, state, draw, col, row, candidates);
-  const float x = static_cast<float>(col);
-  const float y = static_cast<float>(row);
-  const PlaneSlope current =
-      SlopeOf(params.ref, state.planes[row * state.width + col]);
-  CandidateSlopes slopes = {};
-  int same_as[kNumRegions];  // the region whose row of costs this one shares
-  float best_cost[kNumRegions];
-  int count[kNumRegions];
-  uint8_t batch_region[kNumRegions];
-  Plane batch[kNumRegions];
-  int batch_size = 0;
-  candidates->exists = 0;
-  int sample[kNumRegions];
-  for (int i = 0; i < kNumRegions; ++i) {
-    best_cost[i] = 1e30f;
-    count[i] = pattern.num_base[i];
-    sample[i] =
-        BestSample(pattern, state, i, 0, count[i], col, row, &best_cost[i]);
-    if (sample[i] >= 0) candidates->exists |= 1u << i;
+// What the steps of CollectCandidates() hand on, by region.
+struct RegionSamples {
+  int count[kNumRegions];        // samples looked at
+  float best_cost[kNumRegions];  // of them
+  int best[kNumRegions];         // index of its pixel; -1: none in the image
+  // Its plane is nearly that of this region, whose row of costs it shares.
+  int same_as[kNumRegions];
+};
+
+// Planes to be evaluated at once, each for its region.
+struct CandidateBatch {
+  int size;
+  uint8_t region[kNumRegions];
+  Plane plane[kNumRegions];
+
+  HPM_HD_MEMBER void Add(int i, const Plane& candidate) {
+    region[size] = static_cast<uint8_t>(i);
+    plane[size++] = candidate;
   }
-  candidates->exists =
-      CheapestRegions(best_cost, candidates->exists, params.max_candidates);
+};
+
+// First step: the pixel of smallest cost in each region, and the regions that
+// the visit looks into.
+HPM_HD void SampleRegions(const PixelVisit& visit,
+                          RegionSamples* samples,
+                          Candidates* candidates) {
+  candidates->exists = 0;
+  for (int i = 0; i < kNumRegions; ++i) {
+    samples->best_cost[i] = 1e30f;
+    samples->count[i] = visit.pattern.num_base[i];
+    samples->best[i] =
+        BestSample(visit, i, 0, samples->count[i], &samples->best_cost[i]);
+    if (samples->best[i] >= 0) candidates->exists |= 1u << i;
+  }
+  candidates->exists = CheapestRegions(
+      samples->best_cost, candidates->exists, visit.params.max_candidates);
+}
+
+// Second step: the planes of these pixels, and which of them differ enough to
+// be evaluated.
+HPM_HD void FindDifferent(const PixelVisit& visit,
+                          RegionSamples* samples,
+                          Candidates* candidates,
+                          CandidateBatch* batch) {
+  const VisitParams& params = visit.params;
+  const float x = static_cast<float>(visit.col);
+  const float y = static_cast<float>(visit.row);
+  const PlaneSlope current = SlopeOf(params.ref, visit.state.planes[visit.at]);
+  CandidateSlopes slopes = {};
+  batch->size = 0;
   uint32_t different = 0;  // candidates with a row of costs of their own
   for (int i = 0; i < kNumRegions; ++i) {
     if (!(candidates->exists >> i & 1)) continue;
-    candidates->plane[i] = state.planes[sample[i]];
+    candidates->plane[i] = visit.state.planes[samples->best[i]];
     const PlaneSlope slope = SlopeOf(params.ref, candidates->plane[i]);
     slopes.col[i] = slope.col;
     slopes.row[i] = slope.row;
     slopes.constant[i] = slope.constant;
     const uint32_t same = NearlySame(params, slopes, slope, x, y) & different;
-    same_as[i] = same != 0 ? LowestBit(same) : i;
-    if (same_as[i] != i) continue;
+    samples->same_as[i] = same != 0 ? LowestBit(same) : i;
+    if (samples->same_as[i] != i) continue;
     different |= 1u << i;
-    batch_region[batch_size] = static_cast<uint8_t>(i);
-    batch[batch_size++] = candidates->plane[i];
+    batch->Add(i, candidates->plane[i]);
   }
   candidates->current =
       NearlySame(params, slopes, current, x, y) & candidates->exists;
-  const int num_views = candidates->num_views;
+}
 
+// The rows of the matrix that belong to the batch.
+template <class Cost>
+HPM_HD void EvaluateBatch(const Cost& cost,
+                          const CandidateBatch& batch,
+                          Candidates* candidates) {
+  if (batch.size == 0) return;
+  const int num_views = candidates->num_views;
   float costs[kNumRegions * kMaxViews];
+  cost.Photometric(batch.plane, batch.size, candidates->view, num_views, costs);
+  for (int b = 0; b < batch.size; ++b) {
+    for (int j = 0; j < num_views; ++j) {
+      candidates->matrix[batch.region[b] * num_views + j] =
+          costs[b * num_views + j];
+    }
+  }
+}
+
+// The rows of candidates that share the costs of another one.
+HPM_HD void CopySharedCosts(const RegionSamples& samples,
+                            Candidates* candidates) {
+  const int num_views = candidates->num_views;
+  for (int i = 0; i < kNumRegions; ++i) {
+    if (!(candidates->exists >> i & 1) || samples.same_as[i] == i) continue;
+    for (int j = 0; j < num_views; ++j) {
+      candidates->matrix[i * num_views + j] =
+          candidates->matrix[samples.same_as[i] * num_views + j];
+    }
+  }
+}
+
+// Third step: regions whose candidate does not convince double; a better pixel
+// in the new part takes the place of the candidate. `growing`: the regions that
+// have not stopped yet.
+HPM_HD void ExtendRegions(const PixelVisit& visit,
+                          float tau,
+                          uint32_t* growing,
+                          RegionSamples* samples,
+                          Candidates* candidates,
+                          CandidateBatch* batch) {
+  const int num_views = candidates->num_views;
+  batch->size = 0;
+  for (int i = 0; i < kNumRegions; ++i) {
+    if (!(*growing >> i & 1)) continue;
+    if (!MustExtend(&candidates->matrix[i * num_views], num_views, tau)) {
+      *growing &= ~(1u << i);
+      continue;
+    }
+    const int count = samples->count[i];
+    const int best =
+        BestSample(visit, i, count, 2 * count, &samples->best_cost[i]);
+    samples->count[i] *= 2;
+    if (best < 0) continue;
+    candidates->plane[i] = visit.state.planes[best];
+    candidates->current &= ~(1u << i);
+    batch->Add(i, candidates->plane[i]);
+  }
+}
+
+// `draw`: random, in [0, 1).
+template <class Cost>
+HPM_HD void CollectCandidates(const PixelVisit& visit,
+                              const Cost& cost,
+                              float draw,
+                              Candidates* candidates) {
+  ChooseViews(visit, draw, candidates);
+  RegionSamples samples;
+  SampleRegions(visit, &samples, candidates);
+  CandidateBatch batch;
+  FindDifferent(visit, &samples, candidates, &batch);
   uint32_t growing = candidates->exists;
   for (int extension = 0;; ++extension) {
-    if (batch_size > 0)
-      cost.Photometric(batch, batch_size, candidates->view, num_views, costs);
-    for (int b = 0; b < batch_size; ++b) {
-      for (int j = 0; j < num_views; ++j) {
-        candidates->matrix[batch_region[b] * num_views + j] =
-            costs[b * num_views + j];
-      }
-    }
-    if (extension == 0) {
-      for (int i = 0; i < kNumRegions; ++i) {
-        if (!(candidates->exists >> i & 1) || same_as[i] == i) continue;
-        for (int j = 0; j < num_views; ++j) {
-          candidates->matrix[i * num_views + j] =
-              candidates->matrix[same_as[i] * num_views + j];
-        }
-      }
-    }
-    if (extension == pattern.max_extensions) break;
-    batch_size = 0;
-    const float good_cost = ConvincingCost(iteration, extension);
-    for (int i = 0; i < kNumRegions; ++i) {
-      if (!(growing >> i & 1)) continue;
-      if (!MustExtend(
-              &candidates->matrix[i * num_views], num_views, good_cost)) {
-        growing &= ~(1u << i);
-        continue;
-      }
-      const int best = BestSample(
-          pattern, state, i, count[i], 2 * count[i], col, row, &best_cost[i]);
-      count[i] *= 2;
-      if (best < 0) continue;
-      candidates->plane[i] = state.planes[best];
-      candidates->current &= ~(1u << i);
-      batch_region[batch_size] = static_cast<uint8_t>(i);
-      batch[batch_size++] = state.planes[best];
-    }
-    if (growing == 0) break;
+    EvaluateBatch(cost, batch, candidates);
+    if (extension == 0) CopySharedCosts(samples, candidates);
+    if (extension == visit.pattern.max_extensions) return;
+    ExtendRegions(visit,
+                  Tau(visit.iteration, extension),
+                  &growing,
+                  &samples,
+                  candidates,
+                  &batch);
+    if (growing == 0) return;
   }
 }
 

@@ -47,7 +47,7 @@ HPM_HD uint32_t ConsistentViews(const VisitParams& params,
                                 int row) {
   const Vec3f ray =
       RayAt(params.ref, static_cast<float>(col), static_cast<float>(row));
-  const Vec3f point = (-plane.distance / Dot(plane.normal, ray)) * ray;
+  const Vec3f point = DepthOnRay(plane, ray) * ray;
   const float max_cos = cosf(filter.min_triangulation_angle);
   uint8_t views[kMaxViews];
   int num_views = 0;

@@ -14,7 +14,7 @@ enum class StartFrom {
   kCurrent,  // the stored hypothesis
   kMissing,  // as kStored; a random one where none is stored
   kPrior,    // the prior, slightly perturbed, where there is one and the stored
-             // cost is not convincing; else the stored hypothesis
+             // cost is not credible; else the stored hypothesis
 };
 
 // Whether the start computes anything at a pixel with this stored hypothesis.
@@ -22,7 +22,6 @@ HPM_HD bool StartsAt(StartFrom start, const Plane& stored) {
   return start != StartFrom::kMissing || !(stored.distance > 0);
 }
 
-constexpr float kConvincingCost = 0.1f;
 constexpr float kPriorDepthSpread = 0.06f;        // relative
 constexpr float kPriorNormalSpread = 0.0942478f;  // radians per axis, 0.03 pi
 
@@ -128,17 +127,18 @@ HPM_HD void InitializePixel(const VisitParams& params,
   const bool has_plane = plane.distance > 0;
   if (start == StartFrom::kPrior && state.priors != nullptr &&
       state.priors[at].distance > 0 &&
-      !(has_plane && state.costs[at] < kConvincingCost)) {
+      !(has_plane && state.costs[at] < kCredibleCost)) {
     const Plane& prior = state.priors[at];
-    plane.normal = PerturbNormal(prior.normal, ray, kPriorNormalSpread, rng);
+    const Vec3f normal =
+        PerturbNormal(prior.normal, ray, kPriorNormalSpread, rng);
     const float depth =
-        -prior.distance / Dot(prior.normal, ray) *
+        DepthOnRay(prior, ray) *
         rng->Uniform(1 - kPriorDepthSpread, 1 + kPriorDepthSpread);
-    plane.distance = -depth * Dot(plane.normal, ray);
+    plane = PlaneOnRay(ray, depth, normal);
   } else if (start == StartFrom::kRandom || !has_plane) {
-    plane.normal = RandomNormal(ray, rng);
-    plane.distance = -rng->Uniform(params.depth_min, params.depth_max) *
-                     Dot(plane.normal, ray);
+    const Vec3f normal = RandomNormal(ray, rng);
+    plane = PlaneOnRay(
+        ray, rng->Uniform(params.depth_min, params.depth_max), normal);
   }
   state.planes[at] = plane;
   state.costs[at] = CostFromViews(cost,

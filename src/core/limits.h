@@ -5,8 +5,9 @@ namespace hpm {
 
 constexpr int kMaxViews =
     32;  // source views of one reference (bits of a view mask)
-constexpr int kNumRegions = 8;  // propagation regions, one candidate each
-constexpr int kMaxRegionSamples = 88;  // 11 samples doubled three times
+constexpr int kNumRegions = 8;     // propagation regions, one candidate each
+constexpr int kMaxExtensions = 3;  // of a region, N_ext of the paper
+constexpr int kMaxRegionSamples = 11 << kMaxExtensions;
 constexpr int kPatchAxis =
     6;  // window samples per axis: radius * {-1, -3/5, -1/5, 1/5, 3/5, 1}
 constexpr int kPatchSize = kPatchAxis * kPatchAxis;

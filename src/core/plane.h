@@ -11,22 +11,32 @@ struct Plane {
   float distance;
 };
 
-// Plane through the point of depth z on the ray of (col, row).
+// Plane through the point of depth z on a ray (x, y, 1) of the camera frame.
+HPM_HD Plane PlaneOnRay(const Vec3f& ray, float depth, const Vec3f& normal) {
+  return {normal, -depth * Dot(normal, ray)};
+}
+
+// The same on the ray of (col, row).
 HPM_HD Plane PlaneFromDepth(const Camera& camera,
                             float col,
                             float row,
                             float depth,
                             const Vec3f& normal) {
-  return {normal, -depth * Dot(normal, RayAt(camera, col, row))};
+  return PlaneOnRay(RayAt(camera, col, row), depth, normal);
 }
 
-// Depth z of the plane on the ray of (col, row); infinite or negative where the
-// ray runs along the plane or meets it behind the camera.
+// Depth z of the plane on the ray; infinite or negative where the ray runs
+// along the plane or meets it behind the camera.
+HPM_HD float DepthOnRay(const Plane& plane, const Vec3f& ray) {
+  return -plane.distance / Dot(plane.normal, ray);
+}
+
+// The same on the ray of (col, row).
 HPM_HD float DepthAt(const Camera& camera,
                      const Plane& plane,
                      float col,
                      float row) {
-  return -plane.distance / Dot(plane.normal, RayAt(camera, col, row));
+  return DepthOnRay(plane, RayAt(camera, col, row));
 }
 
 }  // namespace hpm

@@ -8,6 +8,9 @@
 
 namespace hpm {
 
+// Costs below it make a hypothesis credible (paper, section 3.3).
+constexpr float kCredibleCost = 0.1f;
+
 struct PriorTerm {
   float gamma;        // 0.5
   float beta;         // 0.18

@@ -41,17 +41,15 @@ HPM_HD Vec3f PerturbNormal(const Vec3f& n,
 
 // The hypotheses beside the current one, from another depth and normal: random
 // or perturbed ones.
-HPM_HD void CombineHypotheses(const Camera& camera,
-                              float col,
-                              float row,
+HPM_HD void CombineHypotheses(const Vec3f& ray,
                               float z,
                               const Vec3f& n,
                               float z_other,
                               const Vec3f& n_other,
                               Plane planes[kNumCombined]) {
-  planes[0] = PlaneFromDepth(camera, col, row, z_other, n);
-  planes[1] = PlaneFromDepth(camera, col, row, z, n_other);
-  planes[2] = PlaneFromDepth(camera, col, row, z_other, n_other);
+  planes[0] = PlaneOnRay(ray, z_other, n);
+  planes[1] = PlaneOnRay(ray, z, n_other);
+  planes[2] = PlaneOnRay(ray, z_other, n_other);
 }
 
 }  // namespace hpm

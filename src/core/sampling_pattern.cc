@@ -3,7 +3,6 @@
 namespace hpm {
 namespace {
 
-constexpr int kMaxExtensions = 3;
 constexpr int kAcmhStrip = 11;
 constexpr int kAcmhV = 7;
 constexpr int kNespStrip = 5;

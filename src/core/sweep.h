@@ -63,8 +63,9 @@ HPM_HD void VisitPixel(const VisitParams& params,
     if constexpr (kKind == SweepKind::kInitialize) {
       InitializePixel(params, state, sweep.start, cost, &rng, col, row);
     } else {
-      UpdatePixel(
-          params, pattern, state, cost, &rng, sweep.iteration, col, row);
+      UpdatePixel(VisitOf(params, pattern, state, sweep.iteration, col, row),
+                  cost,
+                  &rng);
     }
   }
 }

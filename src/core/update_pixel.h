@@ -48,31 +48,37 @@ struct Best {
   }
 };
 
+// All that decides between hypotheses of one visit.
+template <class Cost>
+struct Judge {
+  const PixelVisit& visit;
+  const Cost& cost;
+  const ViewWeights& weights;
+  Bonus bonus;
+};
+
 // Takes the best of the planes if it is better; their photometric costs are
 // known. Reorders planes and costs.
 template <class Cost>
-HPM_HD bool TakeBetter(const VisitParams& params,
-                       const Cost& cost,
-                       const ViewWeights& weights,
-                       const Bonus& bonus,
-                       const Vec3f& ray,
+HPM_HD bool TakeBetter(const Judge<Cost>& judge,
                        Plane* planes,
                        int num_planes,
                        float* costs,
                        Best* best) {
+  const VisitParams& params = judge.visit.params;
   // The geometric term only adds: who is not better without it is out.
   float bonuses[kNumRegions];
   int num_left = 0;
   for (int i = 0; i < num_planes; ++i) {
-    const float z = -planes[i].distance / Dot(planes[i].normal, ray);
+    const float z = DepthOnRay(planes[i], judge.visit.ray);
     if (!(z >= params.depth_min && z <= params.depth_max)) continue;
-    const float plane_bonus = bonus(z, planes[i].normal);
+    const float plane_bonus = judge.bonus(z, planes[i].normal);
     if (!(costs[i] < best->Limit(plane_bonus))) continue;
     planes[num_left] = planes[i];
     costs[num_left] = costs[i];
     bonuses[num_left++] = plane_bonus;
   }
-  AddGeometricTerms(params, cost, weights, planes, num_left, costs);
+  AddGeometricTerms(params, judge.cost, judge.weights, planes, num_left, costs);
   bool taken = false;
   for (int i = 0; i < num_left; ++i) {
     if (!(costs[i] < best->Limit(bonuses[i]))) continue;
@@ -82,17 +88,16 @@ HPM_HD bool TakeBetter(const VisitParams& params,
   return taken;
 }
 
-// New hypotheses for the pixel at (x, y) whose plane is `best`; returns their
-// number. `prior` may be null.
-HPM_HD int RefinedPlanes(const VisitParams& params,
+// New hypotheses for the pixel whose plane is `best`; returns their number.
+// `prior` may be null.
+HPM_HD int RefinedPlanes(const PixelVisit& visit,
                          const Plane& best,
                          const Plane* prior,
-                         float x,
-                         float y,
                          Rng* rng,
                          Plane planes[kNumRefined]) {
-  const Vec3f ray = RayAt(params.ref, x, y);
-  const float depth = -best.distance / Dot(best.normal, ray);
+  const VisitParams& params = visit.params;
+  const Vec3f& ray = visit.ray;
+  const float depth = DepthOnRay(best, ray);
   int num_planes = 0;
   if (params.search_near) {
     if (prior != nullptr) planes[num_planes++] = *prior;
@@ -100,8 +105,7 @@ HPM_HD int RefinedPlanes(const VisitParams& params,
     float z_random;
     Vec3f n_random;
     if (prior != nullptr) {
-      const float prior_depth = -prior->distance / Dot(prior->normal, ray);
-      z_random = prior_depth +
+      z_random = DepthOnRay(*prior, ray) +
                  rng->Uniform(-3.0f, 3.0f) * params.prior_term.sigma_depth;
       n_random = PerturbNormal(
           prior->normal, ray, 0.5f * params.prior_term.sigma_angle, rng);
@@ -109,8 +113,7 @@ HPM_HD int RefinedPlanes(const VisitParams& params,
       z_random = rng->Uniform(params.depth_min, params.depth_max);
       n_random = RandomNormal(ray, rng);
     }
-    CombineHypotheses(
-        params.ref, x, y, depth, best.normal, z_random, n_random, planes);
+    CombineHypotheses(ray, depth, best.normal, z_random, n_random, planes);
     if (prior != nullptr) planes[0] = *prior;
     num_planes = kNumCombined;
   }
@@ -118,44 +121,20 @@ HPM_HD int RefinedPlanes(const VisitParams& params,
                                                  1 + params.depth_perturbation);
   const Vec3f n_perturbed =
       PerturbNormal(best.normal, ray, params.normal_perturbation, rng);
-  CombineHypotheses(params.ref,
-                    x,
-                    y,
-                    depth,
-                    best.normal,
-                    z_perturbed,
-                    n_perturbed,
-                    planes + num_planes);
+  CombineHypotheses(
+      ray, depth, best.normal, z_perturbed, n_perturbed, planes + num_planes);
   return num_planes + kNumCombined;
 }
 
 template <class Cost>
-HPM_HD void UpdatePixel(const VisitParams& params,
-                        const SamplingPattern& pattern,
-                        const PixelState& state,
-                        const Cost& cost,
-                        Rng* rng,
-                        int iteration,
-                        int col,
-                        int row) {
-  const int at = row * state.width + col;
-  const float x = static_cast<float>(col);
-  const float y = static_cast<float>(row);
-  const Vec3f ray = RayAt(params.ref, x, y);
-
+HPM_HD void UpdatePixel(const PixelVisit& visit, const Cost& cost, Rng* rng) {
+  const VisitParams& params = visit.params;
+  const PixelState& state = visit.state;
   Candidates candidates;
-  CollectCandidates(params,
-                    pattern,
-                    state,
-                    cost,
-                    iteration,
-                    rng->Uniform(),
-                    col,
-                    row,
-                    &candidates);
+  CollectCandidates(visit, cost, rng->Uniform(), &candidates);
 
   float probability[kMaxViews];
-  ViewProbabilities(params, candidates, iteration, probability);
+  ViewProbabilities(params, candidates, visit.iteration, probability);
   const ViewWeights weights = DrawViews(probability,
                                         candidates.view,
                                         candidates.num_views,
@@ -163,14 +142,17 @@ HPM_HD void UpdatePixel(const VisitParams& params,
                                         rng->Uniform());
 
   const bool has_prior =
-      state.priors != nullptr && state.priors[at].distance > 0;
-  const Plane* prior = has_prior ? &state.priors[at] : nullptr;
-  const Bonus bonus = {
-      &params.prior_term,
-      prior,
-      has_prior ? -prior->distance / Dot(prior->normal, ray) : 0.0f};
+      state.priors != nullptr && state.priors[visit.at].distance > 0;
+  const Plane* prior = has_prior ? &state.priors[visit.at] : nullptr;
+  const Judge<Cost> judge = {
+      visit,
+      cost,
+      weights,
+      {&params.prior_term,
+       prior,
+       has_prior ? DepthOnRay(*prior, visit.ray) : 0.0f}};
 
-  Best best = {state.planes[at], 0, 0};
+  Best best = {state.planes[visit.at], 0, 0};
   if (candidates.current != 0) {
     const int same = LowestBit(candidates.current);
     best.cost = WeightedMean(weights,
@@ -181,8 +163,8 @@ HPM_HD void UpdatePixel(const VisitParams& params,
     PhotometricCosts(params, cost, weights, &best.plane, 1, &best.cost);
   }
   AddGeometricTerms(params, cost, weights, &best.plane, 1, &best.cost);
-  best.bonus = bonus(-best.plane.distance / Dot(best.plane.normal, ray),
-                     best.plane.normal);
+  best.bonus =
+      judge.bonus(DepthOnRay(best.plane, visit.ray), best.plane.normal);
 
   // Candidates: their photometric costs are known already.
   static_assert(kNumRefined <= kNumRegions, "they share the arrays");
@@ -198,17 +180,15 @@ HPM_HD void UpdatePixel(const VisitParams& params,
                      true,
                      params.worst_cost);
   }
-  const bool propagated = TakeBetter(
-      params, cost, weights, bonus, ray, planes, num_planes, costs, &best);
+  const bool propagated = TakeBetter(judge, planes, num_planes, costs, &best);
 
-  num_planes = RefinedPlanes(params, best.plane, prior, x, y, rng, planes);
+  num_planes = RefinedPlanes(visit, best.plane, prior, rng, planes);
   PhotometricCosts(params, cost, weights, planes, num_planes, costs);
-  TakeBetter(
-      params, cost, weights, bonus, ray, planes, num_planes, costs, &best);
+  TakeBetter(judge, planes, num_planes, costs, &best);
 
-  state.planes[at] = best.plane;
-  state.costs[at] = best.cost;
-  if (propagated) state.masks[at] = weights.mask;
+  state.planes[visit.at] = best.plane;
+  state.costs[visit.at] = best.cost;
+  if (propagated) state.masks[visit.at] = weights.mask;
 }
 
 }  // namespace hpm

@@ -16,6 +16,7 @@
 
 #include "src/core/checkerboard.h"
 #include "src/core/geometric_term.h"
+#include "src/core/pixel_state.h"
 #include "src/core/prior_term.h"
 #include "src/core/view_selection.h"
 
@@ -46,6 +47,33 @@ struct VisitParams {
   bool ask_all_views;  // see ChooseViews()
   bool few_views;
 };
+
+// The visit of one pixel: where it is and what it reads.
+struct PixelVisit {
+  const VisitParams& params;
+  const SamplingPattern& pattern;
+  const PixelState& state;
+  int iteration;
+  int col, row;
+  int at;     // index of the pixel
+  Vec3f ray;  // through its centre, camera frame
+};
+
+HPM_HD PixelVisit VisitOf(const VisitParams& params,
+                          const SamplingPattern& pattern,
+                          const PixelState& state,
+                          int iteration,
+                          int col,
+                          int row) {
+  return {params,
+          pattern,
+          state,
+          iteration,
+          col,
+          row,
+          row * state.width + col,
+          RayAt(params.ref, static_cast<float>(col), static_cast<float>(row))};
+}
 
 // k of the best-k mean at initialisation (paper, sections 3.2 and 4.1).
 constexpr int kNumInitialViews = 4;

@@ -1,6 +1,7 @@
 #include "src/cpu/cpu_target.h"
 
 #include "src/base/error.h"
+#include "src/base/remedies.h"
 #include "src/base/simd_targets.h"
 #include "src/cpu/geometric_error_scalar.h"
 #include "src/cpu/geometric_error_simd.h"
@@ -43,7 +44,7 @@ CpuTarget FindCpuTarget(const std::string& name) {
     names += ", " + target.name;
   }
   throw Error(ErrorCode::kUsage,
-              "--Hpm.cpu_target " + name +
+              std::string(kCpuTarget) + " " + name +
                   ": not available on this machine; use one of " + names);
 }
 

@@ -1,6 +1,7 @@
 #include "src/cpu/cpu_views.h"
 
 #include "src/base/error.h"
+#include "src/base/remedies.h"
 #include "src/cpu/texel_image.h"
 #include "src/engine/source_geometry.h"
 #include "src/engine/visit_params.h"
@@ -46,10 +47,9 @@ CpuViews::CpuViews(const ViewSet& views, const MethodParams& params)
   for (const View& src : views.srcs) num_texels += src.image->data.size();
   if (num_texels > static_cast<size_t>(std::numeric_limits<int32_t>::max())) {
     throw Error(ErrorCode::kOutOfResources,
-                "the source images of one reference have more than 2^31 pixels "
-                "together; set "
-                "--PatchMatchStereo.max_image_size or fewer sources in "
-                "patch-match.cfg");
+                std::string("the source images of one reference have more than "
+                            "2^31 pixels together; use ") +
+                    kSmallerImages + " or fewer sources in patch-match.cfg");
   }
   texels_.resize(num_texels + kTexelPadding);
   size_t offset = 0;

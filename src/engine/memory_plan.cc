@@ -2,6 +2,7 @@
 
 #include "src/base/error.h"
 #include "src/base/platform/memory.h"
+#include "src/base/remedies.h"
 
 #include <algorithm>
 #include <fstream>
@@ -45,12 +46,11 @@ uint64_t PlanCacheBytes(uint64_t asked_bytes,
     throw Error(
         ErrorCode::kOutOfResources,
         fmt::format(
-            "one image needs about {} MB of memory and {} MB may be used; set "
-            "a "
-            "smaller --PatchMatchStereo.max_image_size or fewer sources in "
-            "patch-match.cfg",
+            "one image needs about {} MB of memory and {} MB may be used; use "
+            "{} or fewer sources in patch-match.cfg",
             need >> 20,
-            limit >> 20));
+            limit >> 20,
+            kSmallerImages));
   }
   const uint64_t paying = std::max(kPlentyBytes, min_cache_bytes);
   return std::clamp(std::min(asked_bytes, paying),

@@ -93,7 +93,7 @@ const Method& FindMethod(const std::string& name) {
     names += (names.empty() ? "" : ", ") + std::string(method.name);
   }
   throw Error(ErrorCode::kUsage,
-              "--Hpm.method " + name + ": unknown; use one of " + names);
+              "method " + name + ": unknown; use one of " + names);
 }
 
 MethodParams DefaultParams(const Method& method) {

@@ -55,7 +55,7 @@ int NeededViews::CountSeeing(size_t at) const {
   const auto y = static_cast<float>(at / map_.width);
   const Plane& plane = map_.planes[at];
   const Vec3f ray = RayAt(views_.ref.camera, x, y);
-  const Vec3f point = (-plane.distance / Dot(plane.normal, ray)) * ray;
+  const Vec3f point = DepthOnRay(plane, ray) * ray;
   const PlaneSlope slope = SlopeOf(views_.ref.camera, plane);
   const Vec3f world = WorldFromCam(views_.ref.camera, point);
   int count = 0;

@@ -1,5 +1,6 @@
 #include "src/prior/build_prior.h"
 
+#include "src/core/prior_term.h"
 #include "src/prior/upsample_prior.h"
 
 namespace hpm {

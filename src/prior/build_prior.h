@@ -9,9 +9,6 @@
 
 namespace hpm {
 
-// Costs below this make a point credible (tau of the paper).
-constexpr float kCredibleCost = 0.1f;
-
 // One plane per pixel of LevelCamera(camera, level), distance 0 = none.
 std::vector<Plane> BuildLevelPrior(const HypothesisMap& map,
                                    const Camera& camera,

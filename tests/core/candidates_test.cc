@@ -14,9 +14,8 @@ namespace hpm {
 namespace {
 
 bool Extends(const std::vector<float>& costs, int iteration, int extension) {
-  return MustExtend(costs.data(),
-                    static_cast<int>(costs.size()),
-                    ConvincingCost(iteration, extension));
+  return MustExtend(
+      costs.data(), static_cast<int>(costs.size()), Tau(iteration, extension));
 }
 
 // Paper, section 3.2: tau = 0.8 exp(-iteration^2 (3 - extension) / 90).
@@ -155,14 +154,10 @@ class CollectCandidatesTest : public testing::Test {
     const PixelState state = {
         kSide, kSide, planes_.data(), costs_.data(), masks_.data(), nullptr};
     Candidates candidates;
-    CollectCandidates(params_,
-                      MakeSamplingPattern(true, extensible),
-                      state,
+    const SamplingPattern pattern = MakeSamplingPattern(true, extensible);
+    CollectCandidates(VisitOf(params_, pattern, state, 0, col, row),
                       cost,
-                      0,
                       draw_,
-                      col,
-                      row,
                       &candidates);
     return candidates;
   }

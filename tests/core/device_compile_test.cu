@@ -96,7 +96,7 @@ __global__ void VisitPixels(VisitParams params,
   const DeviceCost cost(views, col, row);
   Rng rng(1, col, row);
   InitializePixel(params, state, StartFrom::kRandom, cost, &rng, col, row);
-  UpdatePixel(params, *pattern, state, cost, &rng, 0, col, row);
+  UpdatePixel(VisitOf(params, *pattern, state, 0, col, row), cost, &rng);
   TakeNeighbour(params, state, col, row);
   MedianFilterPixel(params.ref, state, col, row);
   const int at = row * state.width + col;

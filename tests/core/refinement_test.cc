@@ -93,10 +93,10 @@ TEST(CombineHypotheses, GivesTheSixCombinations) {
   const Vec3f n = Normalized({0.1f, 0, -1});
   const Vec3f n_random = Normalized({-0.5f, 0.3f, -1});
   const Vec3f n_perturbed = Normalized({0.12f, 0.01f, -1});
+  const Vec3f ray = RayAt(camera, 30, 50);
   Plane planes[kNumRefined];
-  CombineHypotheses(camera, 30, 50, 5, n, 8, n_random, planes);
-  CombineHypotheses(
-      camera, 30, 50, 5, n, 5.1f, n_perturbed, planes + kNumCombined);
+  CombineHypotheses(ray, 5, n, 8, n_random, planes);
+  CombineHypotheses(ray, 5, n, 5.1f, n_perturbed, planes + kNumCombined);
   const float depths[] = {8, 5, 8, 5.1f, 5, 5.1f};
   const Vec3f* normals[] = {
       &n, &n_random, &n_random, &n, &n_perturbed, &n_perturbed};

@@ -56,8 +56,9 @@ class UpdatePixelTest : public testing::Test {
 
   void Visit(const FakeCost& cost, uint64_t key = 1, bool with_priors = false) {
     Rng rng(key, kMiddle, kMiddle);
+    const PixelState state = View(with_priors);
     UpdatePixel(
-        params_, pattern_, View(with_priors), cost, &rng, 0, kMiddle, kMiddle);
+        VisitOf(params_, pattern_, state, 0, kMiddle, kMiddle), cost, &rng);
   }
 
   Plane& Here() { return planes_[kMiddle * kSide + kMiddle]; }
@@ -164,6 +165,31 @@ TEST_F(UpdatePixelTest, GeometricTermDecidesBetweenEqualCosts) {
   Visit(cost);
   EXPECT_NEAR(CostHere(), 0.5f, 0.01f);
   EXPECT_NEAR(Here().distance, kTrueDepth, 0.01);
+}
+
+TEST_F(UpdatePixelTest, SearchingNearTriesNothingFarButThePrior) {
+  const Plane prior = {{0, 0, -1}, 5};
+  priors_.assign(priors_.size(), prior);
+  int num_far[2] = {};
+  for (const bool near : {false, true}) {
+    params_.search_near = near;
+    for (const bool with_priors : {false, true}) {
+      int num_priors = 0;
+      const FakeCost cost = {[&](const Plane& plane, int) {
+        const float depth = DepthAt(params_.ref, plane, kMiddle, kMiddle);
+        if (depth == prior.distance && plane.normal.z == prior.normal.z) {
+          ++num_priors;
+        } else if (std::abs(depth / 3 - 1) > 1.01f * params_.depth_perturbation)
+          ++num_far[near];
+        return 1.0f;
+      }};
+      Here() = {{0, 0, -1}, 3};
+      Visit(cost, 1, with_priors);
+      EXPECT_EQ(num_priors > 0, with_priors);
+    }
+  }
+  EXPECT_GT(num_far[false], 0);
+  EXPECT_EQ(num_far[true], 0);
 }
 
 // Where nothing can be seen nothing must break: weights of no view are 0 / 0.

@@ -39,7 +39,7 @@ TEST(PlanCacheBytes, GivesNoLessThanOneProblemNeeds) {
             100 * kMegabyte);
 }
 
-TEST(PlanCacheBytes, RefusesWhatCannotFitAndNamesTheOption) {
+TEST(PlanCacheBytes, RefusesWhatCannotFitAndSaysWhatToDo) {
   for (const auto& [working, min_cache] :
        {std::pair{5 * kGigabyte, kMegabyte}, {kMegabyte, 5 * kGigabyte}}) {
     try {
@@ -47,7 +47,7 @@ TEST(PlanCacheBytes, RefusesWhatCannotFitAndNamesTheOption) {
       ADD_FAILURE() << "no error";
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), ErrorCode::kOutOfResources);
-      EXPECT_THAT(error.what(), testing::HasSubstr("max_image_size"));
+      EXPECT_THAT(error.what(), testing::HasSubstr("smaller images"));
       EXPECT_THAT(error.what(), testing::HasSubstr("4096 MB"));
       EXPECT_THAT(error.what(), testing::Not(testing::HasSubstr("\n")));
     }

@@ -1,5 +1,5 @@
 """Files stay below 500 lines, the library never ends the process (only
-colmap_plugin/tool may), and nobody cites what a reader does not have."""
+colmap_plugin/tool may) and names no option of the program, and nobody cites what a reader does not have."""
 import pathlib
 import re
 import sys
@@ -51,6 +51,15 @@ def process_ends(root):
     return found
 
 
+def options_named_by_the_library(root):
+    """It has none; src/base/remedies.h says how messages come to name them."""
+    return [
+        f"{name}: {option}"
+        for path, name in sources(root, ("src", "cuda"))
+        for option in re.findall(r"--(?:PatchMatchStereo|Hpm)\.\w+", path.read_text(encoding="utf-8"))
+    ]
+
+
 def unknown_citations(root):
     found = []
     for path, name in sources(root, FOLDERS):
@@ -67,6 +76,9 @@ class FileRules(unittest.TestCase):
 
     def test_only_the_tool_ends_the_process(self):
         self.assertEqual(process_ends(ROOT), [])
+
+    def test_the_library_names_no_option_of_the_program(self):
+        self.assertEqual(options_named_by_the_library(ROOT), [])
 
     def test_every_citation_can_be_looked_up(self):
         self.assertEqual(unknown_citations(ROOT), [])
@@ -93,6 +105,13 @@ class TheTestItself(unittest.TestCase):
         self.write("colmap_plugin/formats/map_file.cc", "abort();\n")
         self.write("cuda/launch.cu", "::_exit (1);\n")
         self.assertEqual(len(process_ends(self.root)), 3)
+
+    def test_finds_an_option_in_the_library(self):
+        self.write("src/engine/plan.cc", 'Fail("set " "--Hpm.device cpu");\n')
+        self.write("colmap_plugin/tool/help.cc", 'Say("--Hpm.device");\n')
+        self.assertEqual(
+            options_named_by_the_library(self.root), ["src/engine/plan.cc: --Hpm.device"]
+        )
 
     def test_words_in_comments_and_strings_do_not_count(self):
         self.write("src/engine/run.cc", '// exit(1)\n/* abort() */ Log("exit(1)"); loop_exit();\n')

@@ -130,6 +130,24 @@ TestScene MakeLowTextureWall(const SceneOptions& options) {
       texture);
 }
 
+TestScene MakeRoom(const SceneOptions& options) {
+  TextureOptions texture = TextureFor(options);
+  const double pixel = kDistance / Focal(options);
+  texture.disc_beyond = kBackWall;
+  texture.disc_spacing = 40 * pixel;
+  texture.disc_radius = 6 * pixel;
+  const Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY(),
+                 z = Vector3d::UnitZ();
+  return Assemble(options,
+                  {PlaneSurface{1.02 * kBackWall * z, -z, {}},
+                   PlaneSurface{-1.5 * x, x, {}},
+                   PlaneSurface{1.5 * x, -x, {}},
+                   PlaneSurface{-1.1 * y, y, {}},
+                   PlaneSurface{1.1 * y, -y, {}},
+                   SphereSurface{Vector3d(0.3, -0.1, -0.4), 0.35}},
+                  texture);
+}
+
 const std::vector<std::string>& SceneNames() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> list;

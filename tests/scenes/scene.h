@@ -39,6 +39,10 @@ TestScene MakeDepthStep(const SceneOptions& options);
 TestScene MakeSphere(const SceneOptions& options);
 // A tilted wall that is plain but for discs of texture.
 TestScene MakeLowTextureWall(const SceneOptions& options);
+// Looks into a box whose walls, floor and ceiling have texture; the back wall,
+// at world z >= kBackWall, is plain but for discs, and a ball hangs before it.
+constexpr double kBackWall = 0.8;
+TestScene MakeRoom(const SceneOptions& options);
 
 const std::vector<std::string>& SceneNames();
 // One of SceneNames(); throws Error(kUsage) for any other name.

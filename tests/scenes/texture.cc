@@ -51,7 +51,8 @@ float Texture::Grey(const Eigen::Vector3f& point) const {
 
 float Texture::Contrast(const Eigen::Vector3f& point) const {
   const auto contrast = static_cast<float>(options_.contrast);
-  if (options_.disc_spacing <= 0) return contrast;
+  if (options_.disc_spacing <= 0 || point.z() < options_.disc_beyond)
+    return contrast;
   const auto spacing = static_cast<float>(options_.disc_spacing);
   const auto radius = static_cast<float>(options_.disc_radius);
   const float dx = point.x() - spacing * std::round(point.x() / spacing);

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 
 #include <Eigen/Core>
 
@@ -19,6 +20,9 @@ struct TextureOptions {
   double disc_spacing = 0;
   double disc_radius = 0;
   double plain_contrast = 0;
+  // Discs, and plain between them, from this world z on only; before it
+  // texture is everywhere.
+  double disc_beyond = -std::numeric_limits<double>::infinity();
   uint32_t seed = 1;
 };
 

@@ -1,0 +1,189 @@
+// What a stage does between its passes: which hypotheses of a coarser level
+// stay, and which priors a backend gets.
+#include "src/engine/run_passes.h"
+
+#include "tests/engine/still_backend.h"
+
+#include <memory>
+#include <utility>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace hpm {
+namespace {
+
+constexpr int kWidth = 48, kHeight = 24;
+constexpr float kCoarseDepth = 4, kFineDepth = 5;
+constexpr float kCoarseCost = 0.5f;
+
+// What Run() saw of a pass.
+struct Seen {
+  PassKind kind;
+  int prior_level;
+  size_t num_priors;
+  std::vector<Plane> planes;
+};
+
+// The first pass judges the planes it finds, all alike; any other gives each
+// pixel a plane and the cost of its row.
+class ScriptedBackend : public StillBackend {
+ public:
+  explicit ScriptedBackend(bool upsamples)
+      : StillBackend(&log_), upsamples_(upsamples) {}
+
+  bool UpsamplesPriors() const override { return upsamples_; }
+  void Run(const Pass& pass,
+           const SamplingPattern&,
+           HypothesisMap* map,
+           const RunControl&) override {
+    seen.push_back(
+        {pass.kind, map->prior_level, map->priors.size(), map->planes});
+    const bool judges = pass.num_iterations == 0;
+    for (size_t i = 0; i < map->planes.size(); ++i) {
+      map->costs[i] = judges ? kCoarseCost : costs_of_rows[i / kWidth];
+      if (!judges) map->planes[i] = {{0, 0, -1}, kFineDepth};
+    }
+    map->Touch();
+  }
+
+  std::vector<Seen> seen;
+  std::vector<float> costs_of_rows = std::vector<float>(kHeight, 0.01f);
+
+ private:
+  StillLog log_;
+  bool upsamples_;
+};
+
+// The left half of the picture has texture, the right half none.
+ViewSet HalfTextured() {
+  GrayImage image = {
+      kWidth, kHeight, std::vector<uint8_t>(kWidth * kHeight, 100)};
+  for (int row = 0; row < kHeight; ++row) {
+    for (int col = 0; col < kWidth / 2; ++col)
+      image.data[row * kWidth + col] =
+          static_cast<uint8_t>(60 * (col / 2 % 3) + 40 * (row / 2 % 2));
+  }
+  ViewSet views;
+  views.ref.camera = {kWidth,
+                      kHeight,
+                      40,
+                      40,
+                      0.5f * (kWidth - 1),
+                      0.5f * (kHeight - 1),
+                      {{1, 0, 0, 0, 1, 0, 0, 0, 1}},
+                      {0, 0, 0}};
+  views.ref.image = std::make_shared<const GrayImage>(std::move(image));
+  views.srcs = {views.ref};
+  views.depth_min = 2;
+  views.depth_max = 8;
+  views.random_key = 1;
+  return views;
+}
+
+// The stage of the method at full size that follows a coarser level, if
+// `from_coarser`, else the first one.
+void RunStageOf(const std::string& method,
+                bool from_coarser,
+                ScriptedBackend* backend,
+                HypothesisMap* map) {
+  ScheduleOptions options;
+  options.method = method;
+  options.num_levels = 2;
+  const Schedule schedule = MakeSchedule(options);
+  const CancelToken cancel;
+  PhaseTimes times;
+  for (const StageSpec& stage : schedule.stages) {
+    if (stage.from_coarser != from_coarser) continue;
+    RunPasses(backend,
+              HalfTextured(),
+              schedule,
+              stage,
+              DefaultParams(FindMethod(method)),
+              {&cancel, nullptr},
+              map,
+              &times);
+    return;
+  }
+  FAIL() << method << " has no such stage";
+}
+
+HypothesisMap CoarseMap() {
+  HypothesisMap map(kWidth, kHeight);
+  map.planes.assign(map.planes.size(), {{0, 0, -1}, kCoarseDepth});
+  return map;
+}
+
+constexpr int kTextured = 5, kPlain = 40;  // columns
+
+TEST(RunPasses, ATexturedPixelIsSearchedFromRandomPlanesAPlainOneIsNot) {
+  ScriptedBackend backend(false);
+  HypothesisMap map = CoarseMap();
+  RunStageOf(kDefaultMethod, true, &backend, &map);
+  ASSERT_EQ(backend.seen.size(), 2u);
+  const std::vector<Plane>& given = backend.seen[1].planes;
+  EXPECT_EQ(given[10 * kWidth + kTextured].distance, 0);
+  EXPECT_EQ(given[10 * kWidth + kPlain].distance, kCoarseDepth);
+}
+
+// Where the level searched itself it must match clearly worse to lose,
+// elsewhere clearly better to win.
+TEST(RunPasses, WhatALevelKeepsOfTheCoarserOne) {
+  struct Case {
+    float own_cost;
+    float textured, plain;  // whose plane stays
+  };
+  const std::vector<Case> cases = {
+      {kCoarseCost - 0.15f, kFineDepth, kFineDepth},
+      {kCoarseCost - 0.05f, kFineDepth, kCoarseDepth},
+      {kCoarseCost + 0.05f, kFineDepth, kCoarseDepth},
+      {kCoarseCost + 0.15f, kCoarseDepth, kCoarseDepth}};
+  for (const Case& c : cases) {
+    ScriptedBackend backend(false);
+    backend.costs_of_rows.assign(kHeight, c.own_cost);
+    HypothesisMap map = CoarseMap();
+    RunStageOf(kDefaultMethod, true, &backend, &map);
+    for (const auto& [col, depth] :
+         {std::pair(kTextured, c.textured), std::pair(kPlain, c.plain)}) {
+      const size_t at = 10 * kWidth + col;
+      EXPECT_EQ(map.planes[at].distance, depth) << c.own_cost << " " << col;
+      EXPECT_EQ(map.costs[at], depth == kFineDepth ? c.own_cost : kCoarseCost);
+    }
+  }
+}
+
+// ACMM's detail restoration: nothing is forgotten, the coarse level wins but
+// where the fine one is clearly better.
+TEST(RunPasses, APyramidKeepsTheCoarserLevelUnlessItsOwnIsClearlyBetter) {
+  for (const float own_cost : {kCoarseCost - 0.15f, kCoarseCost - 0.05f}) {
+    ScriptedBackend backend(false);
+    backend.costs_of_rows.assign(kHeight, own_cost);
+    HypothesisMap map = CoarseMap();
+    RunStageOf("acmm", true, &backend, &map);
+    const float depth =
+        own_cost < kCoarseCost - 0.1f ? kFineDepth : kCoarseDepth;
+    for (const int col : {kTextured, kPlain})
+      EXPECT_EQ(map.planes[10 * kWidth + col].distance, depth) << own_cost;
+  }
+}
+
+TEST(RunPasses, BackendsThatUpsampleGetPriorsOfTheirLevelOthersOfFullSize) {
+  for (const bool upsamples : {false, true}) {
+    ScriptedBackend backend(upsamples);
+    HypothesisMap map(kWidth, kHeight);
+    RunStageOf("hpm", false, &backend, &map);
+    ASSERT_EQ(backend.seen.size(), 3u);
+    const size_t full = kWidth * kHeight;
+    EXPECT_EQ(backend.seen[0].num_priors, 0u);
+    EXPECT_EQ(backend.seen[1].kind, PassKind::kPrior);
+    EXPECT_EQ(backend.seen[1].prior_level, upsamples ? 1 : 0);
+    EXPECT_EQ(backend.seen[1].num_priors, upsamples ? full / 4 : full);
+    EXPECT_EQ(backend.seen[2].prior_level, 0);
+    EXPECT_EQ(backend.seen[2].num_priors, full);
+    EXPECT_TRUE(map.priors.empty());
+    EXPECT_EQ(map.prior_level, 0);
+  }
+}
+
+}  // namespace
+}  // namespace hpm
