@@ -42,10 +42,12 @@ TEST(FarOrigin, RelativePosesDepthsAndAnglesAreThoseOfTheModelNearIt) {
   TestWorkspace near_files;
   Write(kNear, &near_files);
   const Workspace near = near_files.Open();
+  const TrackIndex near_tracks(near);
   for (const Eigen::Vector3d& at : {kUtm, kEarth}) {
     TestWorkspace files;
     Write(at, &files);
     const Workspace workspace = files.Open();
+    const TrackIndex tracks(workspace);
     for (int i = 0; i < 3; ++i) {
       for (int origin = 0; origin < 3; ++origin) {
         const Vec3f t = workspace.CameraAround(i, origin).t;
@@ -55,13 +57,15 @@ TEST(FarOrigin, RelativePosesDepthsAndAnglesAreThoseOfTheModelNearIt) {
         EXPECT_NEAR(t.z, expected.z, 1e-6);
       }
       const DepthRange range =
-          *DepthRanges(workspace, TrackIndex(workspace), -1, -1).ForImage(i);
+          *DepthRanges(workspace, tracks, -1, -1).ForImage(i);
       const DepthRange expected =
-          *DepthRanges(near, TrackIndex(near), -1, -1).ForImage(i);
+          *DepthRanges(near, near_tracks, -1, -1).ForImage(i);
       EXPECT_NEAR(range.min, expected.min, 1e-6);
       EXPECT_NEAR(range.max, expected.max, 1e-6);
-      const auto candidates = SourceSelector(workspace).Candidates(i);
-      const auto near_candidates = SourceSelector(near).Candidates(i);
+      const auto candidates =
+          SourceSelector(workspace, tracks).Candidates(i, 0);
+      const auto near_candidates =
+          SourceSelector(near, near_tracks).Candidates(i, 0);
       ASSERT_EQ(candidates.size(), near_candidates.size());
       for (size_t k = 0; k < candidates.size(); ++k) {
         EXPECT_EQ(candidates[k].image, near_candidates[k].image);
