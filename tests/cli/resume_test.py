@@ -10,7 +10,7 @@ import time
 import unittest
 import zlib
 
-from support import FAST, CliTest, map_files
+from support import FAST, TIME_FACTOR, CliTest, map_files
 
 NUM_IMAGES = 4
 NAMES = [f"view{i:02}.png" for i in range(NUM_IMAGES)]
@@ -123,7 +123,7 @@ class Images(ResumeTest):
         (workspace / "other").write_bytes(versions[NAMES[0]]["other"])
         process = self.start_tool(workspace, *slow)
         os.replace(workspace / "other", path)
-        self.assertEqual(process.wait(60), 0)
+        self.assertEqual(process.wait(60 * TIME_FACTOR), 0)
         log = (workspace / "log.txt").read_text()
         self.assertIn("1 of 4 images changed during this run", log)
         self.assertIn(str(path), log)
