@@ -62,14 +62,16 @@ TEST(FarOrigin, RelativePosesDepthsAndAnglesAreThoseOfTheModelNearIt) {
           *DepthRanges(near, near_tracks, -1, -1).ForImage(i);
       EXPECT_NEAR(range.min, expected.min, 1e-6);
       EXPECT_NEAR(range.max, expected.max, 1e-6);
-      const auto candidates =
-          SourceSelector(workspace, tracks).Candidates(i, 0);
-      const auto near_candidates =
-          SourceSelector(near, near_tracks).Candidates(i, 0);
-      ASSERT_EQ(candidates.size(), near_candidates.size());
-      for (size_t k = 0; k < candidates.size(); ++k) {
-        EXPECT_EQ(candidates[k].image, near_candidates[k].image);
-        EXPECT_NEAR(candidates[k].angle, near_candidates[k].angle, 1e-6);
+      for (const double min_angle : {0.5, 1.0, 2.0, 4.0, 8.0, 16.0}) {
+        const auto candidates =
+            SourceSelector(workspace, tracks).Candidates(i, min_angle);
+        const auto near_candidates =
+            SourceSelector(near, near_tracks).Candidates(i, min_angle);
+        ASSERT_EQ(candidates.size(), near_candidates.size());
+        for (size_t k = 0; k < candidates.size(); ++k) {
+          EXPECT_EQ(candidates[k].image, near_candidates[k].image);
+          EXPECT_EQ(candidates[k].num_narrow, near_candidates[k].num_narrow);
+        }
       }
     }
   }
