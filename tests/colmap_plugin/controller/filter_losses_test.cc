@@ -23,6 +23,7 @@ class FilterLossesTest : public testing::Test {
  protected:
   FilterLossesTest() : map_(kWidth, kHeight), consistent_(kWidth * kHeight) {
     views_.ref.camera = CameraAt(0);
+    views_.ref.image = std::make_shared<const GrayImage>();
     SetPlanes({0, 0, -1});
   }
 

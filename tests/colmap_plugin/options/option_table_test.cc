@@ -281,6 +281,8 @@ const std::vector<Values>& ValueTable() {
       {"Hpm.geom_max_error", {"0", "5"}, {"-1"}, ">= 0"},
       {"Hpm.num_levels", {"-1", "8"}, {"-2", "9", "1.5"}, "-1 to 8"},
       {"Hpm.filter_min_agreement", {"0", "1"}, {"-0.1", "1.1"}, "0 to 1"},
+      bools("Hpm.report"),
+      {"Hpm.mask_path", {"masks"}, {}, ""},
       bools("Hpm.previews"),
       bools("Hpm.overwrite"),
   };

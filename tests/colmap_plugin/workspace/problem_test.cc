@@ -350,8 +350,8 @@ TEST_F(ProblemTest, UnusableImagesAreDroppedWithAWarning) {
   EXPECT_THAT(problems[1].src_images, ElementsAre(0, 1, 2, 4));
   EXPECT_THAT(files_.Warnings(),
               ElementsAre(HasSubstr("1 of 6 images not used"),
-                          HasSubstr("source image broken.jpg of 0.jpg"),
-                          HasSubstr("reference image broken.jpg")));
+                          HasSubstr("reference image broken.jpg"),
+                          HasSubstr("source image broken.jpg of 0.jpg")));
 }
 
 TEST_F(ProblemTest, SourcesBeyondTheLimitAreCutWithOneNote) {
