@@ -53,7 +53,7 @@ class FilterLossesTest : public testing::Test {
 
   // depth 0: without maps.
   void AddSource(float x, float depth) {
-    View view = {CameraAt(x), nullptr, nullptr};
+    View view = {CameraAt(x), std::make_shared<const GrayImage>(), nullptr};
     if (depth > 0) {
       view.inverse_depth = std::make_shared<const InverseDepthMap>(
           InverseDepthMap::Of(std::vector<float>(kWidth * kHeight, 1 / depth)));
