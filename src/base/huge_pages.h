@@ -17,7 +17,8 @@ inline void WishHugePages(void* memory, size_t num_bytes) {
   const auto address = reinterpret_cast<uintptr_t>(memory);
   const uintptr_t begin = (address + kHugePage - 1) / kHugePage * kHugePage;
   const uintptr_t end = (address + num_bytes) / kHugePage * kHugePage;
-  if (begin < end) WishHuge(reinterpret_cast<void*>(begin), end - begin);
+  if (begin < end)
+    WishHuge(static_cast<char*>(memory) + (begin - address), end - begin);
 }
 
 template <class T>

@@ -4,6 +4,7 @@
 #include "tests/base/scratch_folder.h"
 
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <functional>
 #include <new>
@@ -64,6 +65,8 @@ TEST_F(LoadImage, LackOfMemoryIsNoDamage) {
         used * static_cast<rlim_t>(sysconf(_SC_PAGESIZE)) + (24 << 20);
     const rlimit limits = {limit, limit};
     setrlimit(RLIMIT_AS, &limits);
+    void* volatile large = std::malloc(64 << 20);
+    if (large != nullptr) _exit(77);
     try {
       LoadGrayImage(path, 80, 60);
       _exit(1);
@@ -76,6 +79,8 @@ TEST_F(LoadImage, LackOfMemoryIsNoDamage) {
   ASSERT_GT(child, 0);
   int status = 0;
   ASSERT_EQ(waitpid(child, &status, 0), child);
+  if (WEXITSTATUS(status) == 77)
+    GTEST_SKIP() << "memory cannot be limited here, as under an emulator";
   EXPECT_EQ(WEXITSTATUS(status), 42);
 }
 
