@@ -6,8 +6,8 @@
 #             source is to be given to its CMake (patches/README.md)
 #   --arm64   also what cross-compiles for ARM and runs it, for tests/arm; exit code 77
 #             when the arm64 libraries cannot be had
-#   --release also what packages, documents and lint are made and checked with,
-#             clang's own C++ library and a compiler for Windows
+#   --release also what packages, documents and lint are made and checked with
+#             and a compiler for Windows; not libc++-dev, which displaces a package of COLMAP's
 #   --browser also Chromium, in which a test opens the report of a run
 #   --check   installs nothing; exit code 1 when something is missing
 set -euo pipefail
@@ -36,6 +36,7 @@ PACKAGES=(
 )
 
 COLMAP_PACKAGES=(
+  libunwind-dev  # of glog; the libunwind of libc++-dev displaces it
   libboost-filesystem-dev libboost-graph-dev libboost-system-dev libboost-test-dev
   libfreeimage-dev libmetis-dev libgoogle-glog-dev libsqlite3-dev liblz4-dev
   libglew-dev libgl-dev qtbase5-dev libqt5opengl5-dev
@@ -45,7 +46,6 @@ RELEASE_PACKAGES=(
   dpkg-dev file lintian
   doxygen
   codespell shellcheck
-  libc++-dev libc++abi-dev
   g++-mingw-w64-x86-64-posix
 )
 
