@@ -8,7 +8,7 @@ namespace hpm {
 namespace {
 
 // Raise when the same options give other maps.
-constexpr int kAlgorithmVersion = 12;
+constexpr int kAlgorithmVersion = 13;
 
 // The pose as the reference sees it.
 void AddImage(const Workspace& workspace,

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <vector>
 
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -19,47 +18,6 @@ void ApplyMask(const GrayImage& mask, GrayImage* image) {
     image->data[i] =
         mask.data[i] == 0 ? 0 : std::max<uint8_t>(image->data[i], 1);
   }
-}
-
-GrayImage BlackBorder(const GrayImage& image) {
-  constexpr size_t kLeastShare = 1000;
-  const int width = image.width, height = image.height;
-  std::vector<uint8_t> reached(image.data.size(), 0);
-  std::vector<size_t> open;
-  const auto reach = [&](int col, int row) {
-    const size_t at = static_cast<size_t>(row) * width + col;
-    if (image.data[at] != 0 || reached[at] != 0) return;
-    reached[at] = 1;
-    open.push_back(at);
-  };
-  for (int col = 0; col < width; ++col) {
-    reach(col, 0);
-    reach(col, height - 1);
-  }
-  for (int row = 0; row < height; ++row) {
-    reach(0, row);
-    reach(width - 1, row);
-  }
-  size_t num_reached = 0;
-  while (!open.empty()) {
-    const size_t at = open.back();
-    open.pop_back();
-    ++num_reached;
-    const int col = static_cast<int>(at % width);
-    const int row = static_cast<int>(at / width);
-    if (col > 0) reach(col - 1, row);
-    if (row > 0) reach(col, row - 1);
-    if (col + 1 < width) reach(col + 1, row);
-    if (row + 1 < height) reach(col, row + 1);
-  }
-  if (num_reached * kLeastShare <= image.data.size()) return {};
-  GrayImage mask;
-  mask.width = width;
-  mask.height = height;
-  mask.data.resize(reached.size());
-  for (size_t i = 0; i < reached.size(); ++i)
-    mask.data[i] = reached[i] != 0 ? 0 : 255;
-  return mask;
 }
 
 GrayImage ResizedMask(const GrayImage& mask, int width, int height) {

@@ -206,23 +206,19 @@ GrayImage ShrinkToExtent(const GrayImage& gray,
   return result;
 }
 
-// `border`: as BlackBorder() of the picture at the size it was decoded at.
 GrayImage Load(const std::filesystem::path& path,
                int width,
                int height,
-               const ImageDecoding& decoding,
-               GrayImage* border) {
+               const ImageDecoding& decoding) {
   if (decoding.stretch) {
     const cv::Mat deep = DecodeDeep(path);
-    GrayImage whole = Stretch(deep, *decoding.stretch);
-    *border = BlackBorder(whole);
-    if (deep.cols == width && deep.rows == height) return whole;
+    if (deep.cols == width && deep.rows == height)
+      return Stretch(deep, *decoding.stretch);
     cv::Mat resized;
     cv::resize(deep, resized, {width, height}, 0, 0, cv::INTER_AREA);
     return Stretch(resized, *decoding.stretch);
   }
   const GrayImage gray = ToGray(Decode(path, FlagsFor(decoding.reduction)));
-  *border = BlackBorder(gray);
   if (decoding.reduction == 1) {
     if (gray.width == width && gray.height == height) return gray;
     return Resize(gray, width, height);
@@ -261,18 +257,9 @@ GrayImage LoadGrayImage(const std::filesystem::path& path,
                         int width,
                         int height,
                         const ImageDecoding& decoding) {
-  GrayImage border;
-  GrayImage image = Load(path, width, height, decoding, &border);
-  if (!border.data.empty())
-    ApplyMask(ResizedMask(border, width, height), &image);
+  GrayImage image = Load(path, width, height, decoding);
   if (decoding.mask.empty()) return image;
-  GrayImage mask = ResizedMask(LoadMask(decoding.mask), width, height);
-  if (image.has_gaps) {
-    for (size_t i = 0; i < mask.data.size(); ++i) {
-      if (image.IsGap(i)) mask.data[i] = 0;
-    }
-  }
-  ApplyMask(mask, &image);
+  ApplyMask(ResizedMask(LoadMask(decoding.mask), width, height), &image);
   return image;
 }
 

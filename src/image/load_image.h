@@ -35,8 +35,8 @@ int ReductionFor(int file_width, int file_height, int width, int height);
 
 // Grey value = round(0.2126 R + 0.7152 G + 0.0722 B) as COLMAP; alpha dropped,
 // EXIF rotation ignored. Resampled to width x height if the file has another
-// size (area averaging when shrinking). A black border counts as masked. Throws
-// Error(kBadInput) naming the file if it is missing, damaged or too large.
+// size (area averaging when shrinking), masked. Throws Error(kBadInput) naming
+// the file if it is missing, damaged or too large.
 GrayImage LoadGrayImage(const std::filesystem::path& path,
                         int width,
                         int height,

@@ -1,7 +1,7 @@
 """Masks: what they cover is neither estimated nor matched, and nothing else changes."""
 import unittest
 
-from png import constant, decode, png
+from png import constant, png
 from support import FAST, CliTest, map_files, read_map
 
 WIDTH, HEIGHT = 96, 72
@@ -96,23 +96,6 @@ class Masks(CliTest):
         result = self.run_tool(self.dense, *self.options)
         self.assert_exit(result, 0)
         self.assertIn("3 of 4 images without a mask are used whole, the first: view00.png", result.stderr)
-
-    def test_black_borders_are_found_without_a_mask(self):
-        self.blacken_left_half()
-        self.assert_exit(self.run_tool(self.dense, *FAST), 0)
-        self.assert_complete(self.dense)
-        for stage in ("photometric", "geometric"):
-            left, right = self.share_of_depths("view00.png", stage)
-            self.assertEqual(left, 0, stage)
-            self.assertGreater(right, 0.6, stage)
-
-    def blacken_left_half(self):
-        image = self.dense / "images/view00.png"
-        grey = decode(image.read_bytes())[3][1::3]
-        image.write_bytes(
-            png(WIDTH, HEIGHT, b"".join(
-                b"\0" * 48 + grey[y * WIDTH + 48 : (y + 1) * WIDTH] for y in range(HEIGHT)))
-        )
 
 
 if __name__ == "__main__":
