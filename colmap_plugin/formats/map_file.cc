@@ -93,9 +93,9 @@ void MapReader::ReadRows(int channel,
   const uint64_t num_bytes = num_rows * row_bytes;
   if (file_.ReadAt(header_bytes_ + first_row * row_bytes, values, num_bytes) !=
       num_bytes) {
-    throw Error(ErrorCode::kBadInput,
-                fmt::format("{} became shorter while it was read; run again",
-                            file_.path().string()));
+    throw UnreadableFile(
+        fmt::format("{} became shorter while it was read; run again",
+                    file_.path().string()));
   }
 }
 

@@ -8,6 +8,7 @@
 #include "colmap_plugin/workspace/run_lock.h"
 #include "colmap_plugin/workspace/stamp.h"
 #include "src/base/error.h"
+#include "src/base/input_file.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -25,21 +26,9 @@ namespace hpm {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr DepthRange kAnyDepth = {0, std::numeric_limits<float>::infinity()};
+constexpr char kOfNoImage[] = "belongs to no image of the model";
 
-const char* NameOfKind(FindingKind kind) {
-  switch (kind) {
-    case FindingKind::kDamaged:
-      return "damaged";
-    case FindingKind::kStale:
-      return "stale";
-    case FindingKind::kForeign:
-      return "foreign";
-    case FindingKind::kMissing:
-      break;
-  }
-  return "missing";
-}
+constexpr DepthRange kAnyDepth = {0, std::numeric_limits<float>::infinity()};
 
 class Checker {
  public:
@@ -91,6 +80,13 @@ class Checker {
 
   std::string Relative(const fs::path& path) const {
     return path.lexically_relative(workspace_.StereoPath()).string();
+  }
+
+  void Add(FindingKind kind,
+           const fs::path& path,
+           const std::string& reason,
+           MapCheck* check) const {
+    check->findings.push_back({kind, Relative(path), reason});
   }
 
   // With the stamp that may vouch for the file.
@@ -157,6 +153,49 @@ class Checker {
                : MapReader(path).Checksum(cancel_);
   }
 
+  // Adds what is wrong with the map, which has this checksum in its stamp, and
+  // returns whether anything is.
+  bool AddFault(MapKind kind,
+                const fs::path& path,
+                const DepthRange& range,
+                const Camera& camera,
+                const std::optional<std::string>& checksum,
+                const fs::path& stamp,
+                MapCheck* check) const {
+    try {
+      std::string fault = FaultOf(kind, path, range);
+      ++check->num_files;
+      if (fault.empty()) fault = FaultOfSize(path, kind, camera);
+      if (fault.empty() && checksum && ChecksumOf(kind, path) != *checksum) {
+        fault =
+            "was changed after it was made: its checksum is not that of "
+            "its stamp";
+      }
+      if (fault.empty()) return false;
+      AddDamaged(path, fault, stamp, check);
+    } catch (const UnreadableFile& error) {
+      // Nobody knows that it is bad, so it stays.
+      Add(FindingKind::kUnreadable, path, error.what(), check);
+    }
+    return true;
+  }
+
+  // Reads the stamp or adds why it is of no use, and returns whether it did the
+  // latter.
+  bool AddStampFault(const fs::path& path,
+                     std::optional<Stamp>* stamp,
+                     MapCheck* check) const {
+    if (!StateOf(path)) return false;
+    try {
+      *stamp = ReadStampFile(path);
+      if (*stamp) return false;
+      AddDamaged(path, "is no stamp of this version of the program", {}, check);
+    } catch (const UnreadableFile& error) {
+      Add(FindingKind::kUnreadable, path, error.what(), check);
+    }
+    return true;
+  }
+
   void CheckStage(int s, int p, MapCheck* check) const {
     cancel_.ThrowIfCancelled();
     const StereoProblem& problem = problems_[p];
@@ -169,11 +208,8 @@ class Checker {
       check->findings.push_back({kind, what, reason});
     };
     const fs::path stamp_path = StampPath(workspace_.StatePath(), name, stage);
-    std::optional<Stamp> stamp = ReadStamp(workspace_.StatePath(), name, stage);
-    if (!stamp && StateOf(stamp_path)) {
-      AddDamaged(
-          stamp_path, "is no stamp of this version of the program", {}, check);
-    }
+    std::optional<Stamp> stamp;
+    bool has_fault = AddStampFault(stamp_path, &stamp, check);
     // Of maps that are the last of a run.
     const DepthRange& range =
         plan_.stages()[s].is_final && stamp &&
@@ -182,7 +218,7 @@ class Checker {
             : kAnyDepth;
 
     const StageFiles files = plan_.Files(s, image);
-    bool any = false, all = true, damaged = false;
+    bool any = false, all = true;
     const auto look = [&](const char* in_stamp,
                           MapKind kind,
                           const fs::path& path,
@@ -193,19 +229,16 @@ class Checker {
         return;
       }
       any = true;
-      ++check->num_files;
-      std::string fault = FaultOf(kind, path, range);
-      if (fault.empty())
-        fault = FaultOfSize(path, kind, plan_.CameraOf(s, image));
-      if (fault.empty() && stamp && stamp->files.count(in_stamp) > 0 &&
-          ChecksumOf(kind, path) != stamp->files[in_stamp].checksum) {
-        fault =
-            "was changed after it was made: its checksum is not that of "
-            "its stamp";
-      }
-      if (fault.empty()) return;
-      damaged = true;
-      AddDamaged(path, fault, stamp_path, check);
+      std::optional<std::string> checksum;
+      if (stamp && stamp->files.count(in_stamp) > 0)
+        checksum = stamp->files[in_stamp].checksum;
+      has_fault |= AddFault(kind,
+                            path,
+                            range,
+                            plan_.CameraOf(s, image),
+                            checksum,
+                            stamp_path,
+                            check);
     };
     look("depth", MapKind::kDepth, files.depth, true);
     look("normal", MapKind::kNormal, files.normal, true);
@@ -214,7 +247,7 @@ class Checker {
          files.graph,
          plan_.WritesGraph(s, image));
 
-    if (damaged) return;
+    if (has_fault) return;  // was told
     if (!CanBeComputed(workspace_, problem)) {
       if (is_public && problem.is_reference) {
         add(FindingKind::kMissing,
@@ -229,8 +262,8 @@ class Checker {
       return;
     }
     if (!stamp) {
-      add(FindingKind::kForeign,
-          "without a stamp: made by another program, or by a run that was "
+      add(FindingKind::kUnstamped,
+          "made by another program, or by a run that was "
           "stopped just then");
     } else if (stamp->fingerprint == plan_.IncompleteFingerprintOf(s, p)) {
       add(FindingKind::kStale,
@@ -260,56 +293,55 @@ class Checker {
     MapKind kind = MapKind::kConsistencyGraph;
     if (folder == "depth_maps") kind = MapKind::kDepth;
     if (folder == "normal_maps") kind = MapKind::kNormal;
-    for (const fs::path& path : FilesBelow(root, ".bin")) {
+    for (const fs::path& path : FilesBelow(root, ".bin", check)) {
       if (known_.count(path) > 0) continue;
       cancel_.ThrowIfCancelled();
       const int image = ImageOf(path.lexically_relative(root).string());
       if (image < 0) {
-        check->findings.push_back({FindingKind::kForeign,
-                                   Relative(path),
-                                   "belongs to no image of the model"});
+        Add(FindingKind::kForeign, path, kOfNoImage, check);
         continue;
       }
-      ++check->num_files;
-      std::string fault = FaultOf(kind, path, kAnyDepth);
-      if (fault.empty())
-        fault = FaultOfSize(path, kind, workspace_.camera(image));
-      if (fault.empty()) {
-        check->findings.push_back(
-            {FindingKind::kForeign,
-             Relative(path),
-             "a run with these options does not make it"});
-      } else {
-        AddDamaged(path, fault, {}, check);
+      const Camera& camera = workspace_.camera(image);
+      if (!AddFault(kind, path, kAnyDepth, camera, {}, {}, check)) {
+        Add(FindingKind::kForeign,
+            path,
+            "a run with these options does not make it",
+            check);
       }
     }
   }
 
   void CheckOtherStamps(MapCheck* check) const {
     const fs::path root = workspace_.StatePath() / "stamps";
-    std::error_code ignored;
-    for (const fs::path& path : FilesBelow(root, ".json")) {
+    for (const fs::path& path : FilesBelow(root, ".json", check)) {
       const fs::path below = path.lexically_relative(root);
-      const std::string stage = below.begin()->string();
-      std::string name = below.lexically_relative(stage).string();
-      name.resize(name.size() - std::char_traits<char>::length(".json"));
-      if (workspace_.ImageIndex(name) >= 0) continue;
-      check->findings.push_back({FindingKind::kForeign,
-                                 Relative(path),
-                                 "belongs to no image of the model"});
+      fs::path name = below.lexically_relative(*below.begin());
+      name.replace_extension();
+      if (workspace_.ImageIndex(name.string()) < 0)
+        Add(FindingKind::kForeign, path, kOfNoImage, check);
     }
   }
 
-  static std::vector<fs::path> FilesBelow(const fs::path& root,
-                                          const std::string& extension) {
+  // A folder that is not there holds none; one that cannot be read is told.
+  std::vector<fs::path> FilesBelow(const fs::path& root,
+                                   const std::string& extension,
+                                   MapCheck* check) const {
     std::vector<fs::path> files;
     std::error_code error;
+    fs::path at = root;
     for (fs::recursive_directory_iterator it(root, error), end;
          !error && it != end;
          it.increment(error)) {
       std::error_code ignored;
-      if (it->path().extension() == extension && it->is_regular_file(ignored))
-        files.push_back(it->path());
+      at = it->path();
+      if (at.extension() == extension && it->is_regular_file(ignored))
+        files.push_back(at);
+    }
+    if (error && error != std::errc::no_such_file_or_directory) {
+      Add(FindingKind::kUnreadable,
+          at,
+          "the folder cannot be read from here on: " + error.message(),
+          check);
     }
     std::sort(files.begin(), files.end());
     return files;
@@ -325,13 +357,6 @@ class Checker {
 };
 
 }  // namespace
-
-int MapCheck::Count(FindingKind kind) const {
-  return static_cast<int>(
-      std::count_if(findings.begin(), findings.end(), [&](const Finding& f) {
-        return f.kind == kind;
-      }));
-}
 
 MapCheck CheckMaps(const ControllerOptions& options,
                    bool fix,
@@ -349,30 +374,6 @@ MapCheck CheckMaps(const ControllerOptions& options,
                  lock ? &*lock : nullptr,
                  stop)
       .Run();
-}
-
-std::string CheckText(const MapCheck& check) {
-  std::string text;
-  for (const Finding& finding : check.findings) {
-    text += fmt::format("{:8}{}{}: {}\n",
-                        NameOfKind(finding.kind),
-                        finding.what,
-                        finding.removed ? " (removed)" : "",
-                        finding.reason);
-  }
-  if (check.Count(FindingKind::kStale) > 0) {
-    text +=
-        "give check the options of the run: with others all its maps are "
-        "stale\n";
-  }
-  return text + fmt::format(
-                    "{} files read: {} damaged, {} stale, {} foreign, "
-                    "{} missing\n",
-                    check.num_files,
-                    check.Count(FindingKind::kDamaged),
-                    check.Count(FindingKind::kStale),
-                    check.Count(FindingKind::kForeign),
-                    check.Count(FindingKind::kMissing));
 }
 
 }  // namespace hpm

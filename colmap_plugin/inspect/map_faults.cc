@@ -2,6 +2,7 @@
 
 #include "colmap_plugin/formats/consistency_graph.h"
 #include "src/base/error.h"
+#include "src/base/input_file.h"
 
 #include <algorithm>
 #include <cmath>
@@ -57,6 +58,8 @@ std::string FirstFault(
             "{} at column {}, row {}", fault, i % width, row + i / width);
       }
     }
+  } catch (const UnreadableFile&) {
+    throw;
   } catch (const Error& error) {
     if (error.code() != ErrorCode::kBadInput) throw;
     return WithoutPath(error.what(), path);
@@ -100,6 +103,8 @@ std::string FaultOfGraph(const std::filesystem::path& path, int num_images) {
         }
       }
     }
+  } catch (const UnreadableFile&) {
+    throw;
   } catch (const Error& error) {
     if (error.code() != ErrorCode::kBadInput) throw;
     return WithoutPath(error.what(), path);

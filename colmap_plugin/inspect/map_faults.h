@@ -10,7 +10,7 @@
 namespace hpm {
 
 // In one line, without the file's name; empty if nothing is. Memory for some
-// rows only.
+// rows only. A file that cannot be read has no fault: UnreadableFile is thrown.
 
 // Header, length, one channel, all values finite, not negative, and zero or in
 // `range`.

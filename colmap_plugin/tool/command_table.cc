@@ -48,17 +48,18 @@ std::vector<Command> MakeTable() {
        TakesOptions::kAll,
        {Row("sample_seconds", &C::sample_seconds, Between(0, 3600),
             "How long to measure for the time; 0: say no time")}},
-      {"check", "Validate all maps of a workspace and name those that are damaged, stale, foreign or missing",
+      {"check", "Validate all maps of a workspace and name those that are damaged, unreadable, stale, unstamped, foreign or missing",
        "Reads every depth map, normal map, consistency graph and stamp: header and length, checksum, finite "
        "values, depths that are not negative and inside a range given by hand, normals of length one, and the "
        "size that the image has in the run. Give the options of the run: maps made with others are stale. Each "
-       "finding is one line: 'damaged' is of no use to anybody; 'stale' was made with other options, from other "
-       "images or by another version; 'foreign' was made by another program or belongs to no image of the model; "
-       "'missing' is what the next run makes. Nothing is changed without --fix 1.",
-       "0 all is there and good, 3 something is damaged, 4 nothing is damaged, but the next run has something to do",
+       "finding is one line: 'damaged' is of no use to anybody; 'unreadable' may be good, but the disk or the "
+       "permissions do not let it be read; 'stale' was made with other options, from other images or by another "
+       "version; 'unstamped' was made by another program, or by a run that was stopped just then; 'foreign' is a "
+       "file that the run does not make; 'missing' is what the next run makes. Nothing is changed without --fix 1.",
+       "0 all is there and good, 3 something is damaged or unreadable, 4 neither, but the next run has something to do",
        TakesOptions::kAll,
        {Row("fix", &C::fix, Anything(),
-            "Remove what is damaged, so that the next run makes only that; stale and foreign files stay")}},
+            "Remove what is damaged, so that the next run makes only that; all else stays")}},
       {"report", "Write a page about a workspace's maps: pictures, why pixels were dropped, times, warnings",
        "One HTML file that needs nothing else, made of the maps, their stamps and the record of the last run: image, "
        "depth and normals side by side, the share of pixels with a depth and what took the others, sources and the "

@@ -89,12 +89,7 @@ int RunCheck(const CommandCall& call) {
   const MapCheck check =
       CheckMaps(call.options, call.own.fix, call.log, *call.cancel);
   const int printed = call.print(CheckText(check));
-  if (printed != 0) return printed;
-  for (const Finding& finding : check.findings) {
-    if (finding.kind == FindingKind::kDamaged && !finding.removed)
-      return static_cast<int>(ErrorCode::kBadInput);
-  }
-  return check.findings.empty() ? 0 : static_cast<int>(ErrorCode::kPartial);
+  return printed != 0 ? printed : check.ExitCode();
 }
 
 int RunExport(const CommandCall& call) {

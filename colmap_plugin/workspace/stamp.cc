@@ -77,11 +77,21 @@ void RemoveStamp(const std::filesystem::path& state_path,
 std::optional<Stamp> ReadStamp(const std::filesystem::path& state_path,
                                const std::string& image_name,
                                const std::string& stage) {
+  try {
+    return ReadStampFile(StampPath(state_path, image_name, stage));
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
+std::optional<Stamp> ReadStampFile(const std::filesystem::path& path) {
   std::string text;
   try {
-    text =
-        ReadWholeFile(StampPath(state_path, image_name, stage), kMaxStampBytes);
-  } catch (const Error&) {
+    text = ReadWholeFile(path, kMaxStampBytes);
+  } catch (const UnreadableFile&) {
+    throw;
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::kBadInput) throw;
     return std::nullopt;
   }
   nlohmann::json json =

@@ -46,10 +46,12 @@ void RemoveStamp(const std::filesystem::path& state_path,
                  const std::string& image_name,
                  const std::string& stage);
 
-// Nothing if the stamp is absent, damaged or of another version of this file:
-// the maps are then made anew.
+// Nothing if the stamp is absent, unreadable, damaged or of another version of
+// this file: the maps are then made anew.
 std::optional<Stamp> ReadStamp(const std::filesystem::path& state_path,
                                const std::string& image_name,
                                const std::string& stage);
+// The same of the file at `path`, but throws UnreadableFile.
+std::optional<Stamp> ReadStampFile(const std::filesystem::path& path);
 
 }  // namespace hpm

@@ -1,6 +1,5 @@
 #include "src/base/input_file.h"
 
-#include "src/base/error.h"
 #include "src/base/platform/files.h"
 #include "src/base/retries.h"
 
@@ -14,13 +13,12 @@ namespace {
 
 [[noreturn]] void ThrowCannotRead(const std::filesystem::path& path,
                                   int error) {
-  throw Error(ErrorCode::kBadInput,
-              fmt::format("cannot read {}: {}; {}",
-                          path.string(),
-                          std::generic_category().message(error),
-                          IsTransient(error)
-                              ? "check the disk or its server and run again"
-                              : "check that the file exists and is readable"));
+  throw UnreadableFile(fmt::format(
+      "cannot read {}: {}; {}",
+      path.string(),
+      std::generic_category().message(error),
+      IsTransient(error) ? "check the disk or its server and run again"
+                         : "check that the file exists and is readable"));
 }
 
 // O_NONBLOCK: opening a FIFO without a writer must return, so that it can be
@@ -42,9 +40,8 @@ InputFile::InputFile(const std::filesystem::path& path) : path_(path) {
   if (fd_ < 0) ThrowCannotRead(path, errno);
   if (!S_ISREG(status.st_mode)) {
     close(fd_);
-    throw Error(ErrorCode::kBadInput,
-                fmt::format("{} is not a regular file; give the path of a file",
-                            path.string()));
+    throw UnreadableFile(fmt::format(
+        "{} is not a regular file; give the path of a file", path.string()));
   }
   size_ = static_cast<uint64_t>(status.st_size);
 }

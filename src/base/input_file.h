@@ -1,8 +1,10 @@
 // Opening and reading of untrusted files: only regular files (a FIFO would
 // block for ever, a device has no length), length known before anything is
-// allocated. Errors that pass are retried (retries.h). Throws Error(kBadInput)
-// naming the file.
+// allocated. Errors that pass are retried (retries.h). Throws UnreadableFile,
+// which names the file.
 #pragma once
+
+#include "src/base/error.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -14,6 +16,13 @@ namespace hpm {
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__,
               "COLMAP's files are little-endian and are read and written "
               "without swapping");
+
+// What the file holds is not known, so it may be good.
+class UnreadableFile : public Error {
+ public:
+  explicit UnreadableFile(const std::string& message)
+      : Error(ErrorCode::kBadInput, message) {}
+};
 
 class InputFile {
  public:
@@ -35,7 +44,7 @@ class InputFile {
   int fd_ = -1;
 };
 
-// All of it, if it has at most `max_bytes`; else it throws.
+// All of it, if it has at most `max_bytes`; else it throws Error(kBadInput).
 std::string ReadWholeFile(const std::filesystem::path& path,
                           uint64_t max_bytes);
 

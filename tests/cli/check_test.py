@@ -1,5 +1,5 @@
-"""hpm_mvs check: every damaged, stale, foreign and missing map is named, and --fix
-removes what is damaged, no more."""
+"""hpm_mvs check: every damaged, unreadable, stale, unstamped, foreign and missing map is
+named, and --fix removes what is damaged, no more."""
 import array
 import subprocess
 import unittest
@@ -133,7 +133,7 @@ class Check(CliTest):
         self.assertEqual(
             [f.split(":")[0] for f in findings],
             [
-                "foreign view01.png geometric",
+                "unstamped view01.png geometric",
                 "missing view02.png geometric",
                 "foreign depth_maps/stranger.png.geometric.bin",
                 "foreign hpm_mvs/stamps/geometric/stranger.png.json",
@@ -144,6 +144,57 @@ class Check(CliTest):
         self.assertEqual(result.returncode, 4)
         self.assertEqual(len([f for f in findings if f.startswith("stale ")]), 6)
         self.assertIn("give check the options of the run", result.stdout)
+
+    def test_what_cannot_be_read_is_told_and_stays(self):
+        self.run_all()
+        depth = self.dense / "stereo/depth_maps"
+        stamps = self.dense / "stereo/hpm_mvs/stamps/geometric"
+        for path in (depth / "view00.png.geometric.bin", stamps / "view01.png.json"):
+            path.unlink()
+            path.mkdir()
+        before = sorted(self.dense.rglob("*"))
+        result, findings = self.check(*GRAPHS, "--fix", "1")
+        self.assertEqual(result.returncode, 3, result.stdout)
+        self.assertEqual(
+            [f.split(": ")[0] for f in findings],
+            [
+                "unreadable depth_maps/view00.png.geometric.bin",
+                "unreadable hpm_mvs/stamps/geometric/view01.png.json",
+            ],
+        )
+        self.assertEqual(sorted(self.dense.rglob("*")), before)
+
+    def test_a_folder_that_cannot_be_read_is_named(self):
+        self.run_all(*FAST)
+        folder = self.dense / "stereo/consistency_graphs"
+        folder.rmdir()
+        folder.write_bytes(b"")
+        result, findings = self.check(*FAST, "--fix", "1")
+        self.assertEqual(result.returncode, 3, result.stdout)
+        self.assertEqual(len(findings), 1)
+        self.assertTrue(findings[0].startswith("unreadable consistency_graphs: "), findings[0])
+        self.assertTrue(folder.exists())
+
+    def test_files_that_the_run_does_not_make_are_told_and_no_fault(self):
+        self.run_all(*FAST)
+        strangers = ["hpm_mvs/stamps/x.json", "hpm_mvs/stamps/geometric/x.json", "depth_maps/x.bin"]
+        for name in strangers:
+            (self.dense / "stereo" / name).write_text("{}")
+        result, findings = self.check(*FAST, "--fix=1")
+        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+        self.assertEqual(
+            sorted(f.split(": ")[0] for f in findings), sorted(f"foreign {s}" for s in strangers)
+        )
+
+    def test_a_damaged_stamp_is_told_once(self):
+        self.run_all(*FAST)
+        self.spoil("hpm_mvs/stamps/geometric/view01.png.json", lambda data: data[:50])
+        for options, code in (((), 3), (("--fix=1",), 4)):
+            result, findings = self.check(*FAST, *options)
+            self.assertEqual((result.returncode, len(findings)), (code, 1), result.stdout)
+        result, findings = self.check(*FAST)
+        self.assertEqual(result.returncode, 4)
+        self.assertEqual([f.split(": ")[0] for f in findings], ["unstamped view01.png geometric"])
 
     def test_depths_outside_a_given_range_are_damage(self):
         ranged = [*FAST, "--PatchMatchStereo.depth_min=1", "--PatchMatchStereo.depth_max=50"]
@@ -167,7 +218,7 @@ class Check(CliTest):
         self.assert_exit(self.check()[0], 3, "cameras.bin")
 
 
-KINDS = ("damaged", "stale", "foreign", "missing")
+KINDS = ("damaged", "unreadable", "stale", "unstamped", "foreign", "missing")
 
 if __name__ == "__main__":
     unittest.main()

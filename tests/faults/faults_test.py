@@ -6,9 +6,10 @@ call, HPM_FAULT_POINTS=<n> up to n of each kind."""
 import errno
 import os
 import pathlib
+import subprocess
 import unittest
 
-from support import CliTest, map_files
+from support import HPM_MVS, TIME_FACTOR, CliTest, map_files
 
 INJECTOR = os.environ["HPM_FAULT_INJECTOR"]
 POINTS = os.environ.get("HPM_FAULT_POINTS", "2")
@@ -49,9 +50,7 @@ class Faults(CliTest):
     def scene(self):
         return self.workspace(views=3, width=48, height=36)
 
-    def run_with(self, workspace, fault=None):
-        """The result and the calls of each kind."""
-        counts = workspace.parent / "counts.txt"
+    def environment(self, workspace, counts, fault):
         environment = dict(
             os.environ,
             LD_PRELOAD=INJECTOR,
@@ -61,7 +60,12 @@ class Faults(CliTest):
         )
         if fault:
             environment["HPM_FAULT"] = ":".join(str(part) for part in fault)
-        result = self.run_tool(workspace, *OPTIONS, env=environment)
+        return environment
+
+    def run_with(self, workspace, fault=None):
+        """The result and the calls of each kind."""
+        counts = workspace.parent / "counts.txt"
+        result = self.run_tool(workspace, *OPTIONS, env=self.environment(workspace, counts, fault))
         lines = counts.read_text().split("\n") if counts.exists() else []
         return result, {kind: int(n) for kind, n in (line.split() for line in lines if line)}
 
@@ -141,6 +145,39 @@ class Faults(CliTest):
 
     def test_unlink(self):
         self.try_kind("unlink")
+
+    def test_check_removes_nothing_because_it_cannot_be_read(self):
+        workspace = self.scene()
+        self.assert_exit(self.run_tool(workspace, *OPTIONS), 0)
+        stereo = workspace / "stereo"
+
+        def files():
+            names = (p.relative_to(stereo).as_posix() for p in stereo.rglob("*"))
+            return {name for name in names if name.endswith((".bin", ".json"))}
+
+        def check(fault):
+            counts = workspace.parent / "counts.txt"
+            result = subprocess.run(
+                [HPM_MVS, "check", "--workspace_path", str(workspace), *OPTIONS, "--fix=1"],
+                stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE,
+                text=True,
+                env=self.environment(workspace, counts, fault),
+                timeout=120 * TIME_FACTOR,
+            )
+            return result, dict(line.split() for line in counts.read_text().splitlines())
+
+        before = files()
+        _, counts = check(None)
+        num_told = 0
+        for kind, error in (("open", errno.EACCES), ("open", errno.EIO), ("read", errno.EIO)):
+            for number in range(1, int(counts[kind]) + 1, 1 if POINTS == "all" else 5):
+                with self.subTest(kind=kind, number=number, error=errno.errorcode[error]):
+                    result, _ = check((kind, number, error, EVER_AFTER))
+                    self.assertEqual(files(), before, result.stdout + result.stderr)
+                    num_told += "\nunreadable depth_maps/" in "\n" + result.stdout
+                    self.assertNotEqual(result.returncode, 0, result.stdout)
+        self.assertGreater(num_told, 0)
 
     def test_a_disk_that_goes_away_is_an_error_after_some_tries(self):
         for kind in ("read", "write", "fsync"):
