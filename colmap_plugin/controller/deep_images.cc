@@ -87,7 +87,7 @@ bool Measure(const Workspace& workspace,
              const CancelToken& cancel,
              std::vector<DeepImage>* images) {
   std::vector<DeepImage*> unknown;
-  uint64_t largest = 1;
+  uint64_t largest = 0;
   for (DeepImage& image : *images) {
     const uint64_t bytes = DecodedBytes(workspace, image.index);
     // A bomb is not even tried.
@@ -96,10 +96,7 @@ bool Measure(const Workspace& workspace,
     largest = std::max(largest, bytes);
   }
   if (unknown.empty()) return false;
-  const uint64_t most = MemoryLimit() / 4 / largest;
-  const int num_threads = static_cast<int>(std::clamp<uint64_t>(
-      most, 1, static_cast<uint64_t>(tbb::this_task_arena::max_concurrency())));
-  tbb::task_arena(num_threads).execute([&] {
+  tbb::task_arena(ThreadsToDecode(largest)).execute([&] {
     tbb::parallel_for(size_t{0}, unknown.size(), [&](size_t i) {
       cancel.ThrowIfCancelled();
       DeepImage* image = unknown[i];

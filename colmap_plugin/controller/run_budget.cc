@@ -1,10 +1,37 @@
 #include "colmap_plugin/controller/run_budget.h"
 
 #include "colmap_plugin/workspace/output_check.h"
+#include "src/engine/memory_plan.h"
 
 #include <algorithm>
 
+#include <tbb/task_arena.h>
+
 namespace hpm {
+
+namespace {
+
+uint64_t BytesOfSample(SampleDepth depth) {
+  switch (depth) {
+    case SampleDepth::k8:
+      return 1;
+    case SampleDepth::k16:
+      return 2;
+    case SampleDepth::kOther:
+      break;
+  }
+  return 4;
+}
+
+// The file, its samples and 0 or 255 for each, never at a reduced scale.
+uint64_t DecodedMaskBytes(const std::optional<ImageSize>& size) {
+  if (!size) return 0;
+  return size->file_bytes + (BytesOfSample(size->depth) + 1) *
+                                static_cast<uint64_t>(size->width) *
+                                static_cast<uint64_t>(size->height);
+}
+
+}  // namespace
 
 uint64_t DecodedBytes(const Workspace& workspace, int image) {
   const std::optional<ImageSize>& size = workspace.file_size(image);
@@ -12,16 +39,24 @@ uint64_t DecodedBytes(const Workspace& workspace, int image) {
   const ImageDecoding decoding = workspace.Decoding(image);
   // Three samples (four of deep files, which may have alpha), and grey.
   uint64_t bytes_per_pixel = 3 + 1;
-  if (size->depth != SampleDepth::k8) {
-    const uint64_t sample = size->depth == SampleDepth::k16 ? 2 : 4;
-    bytes_per_pixel = 4 * sample + sizeof(float);
-  }
+  if (size->depth != SampleDepth::k8)
+    bytes_per_pixel = 4 * BytesOfSample(size->depth) + sizeof(float);
   const auto decoded = [&](int side) {
     return static_cast<uint64_t>((side + decoding.reduction - 1) /
                                  decoding.reduction);
   };
-  return size->file_bytes +
-         bytes_per_pixel * decoded(size->width) * decoded(size->height);
+  const uint64_t bytes = size->file_bytes + bytes_per_pixel *
+                                                decoded(size->width) *
+                                                decoded(size->height);
+  // One after the other.
+  return std::max(bytes, DecodedMaskBytes(workspace.mask_size(image)));
+}
+
+int ThreadsToDecode(uint64_t largest_bytes) {
+  const uint64_t most =
+      MemoryLimit() / 4 / std::max<uint64_t>(largest_bytes, 1);
+  return static_cast<int>(std::clamp<uint64_t>(
+      most, 1, static_cast<uint64_t>(tbb::this_task_arena::max_concurrency())));
 }
 
 MemoryNeeds LargestNeeds(const Workspace& workspace,

@@ -18,8 +18,13 @@ struct MemoryNeeds {
   uint64_t decoding = 0;  // of `working`: the decoder
 };
 
-// While the image's file is decoded, at the scale it is decoded at.
+// While the image's file is decoded, at the scale it is decoded at, or its
+// mask.
 uint64_t DecodedBytes(const Workspace& workspace, int image);
+
+// How many threads may decode files of at most so many bytes (as above) at once
+// while nothing else is in memory.
+int ThreadsToDecode(uint64_t largest_bytes);
 
 MemoryNeeds LargestNeeds(const Workspace& workspace,
                          const std::vector<StereoProblem>& problems,

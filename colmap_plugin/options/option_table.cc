@@ -138,7 +138,8 @@ std::vector<OptionSpec> MakeTable() {
           "Write colour pictures of the maps to stereo/previews"),
       HpmWorkspace(kCommon, kInputs, "mask_path", &W::mask_path, Anything(),
                 "Folder with masks of the undistorted images: of a/b.jpg the mask is a/b.jpg.png, as in COLMAP; where it "
-                "is 0 the image is ignored, as reference and as source"),
+                "is 0 the image is ignored, as reference and as source; leave a margin of half a window around what is wanted, "
+                "since windows that reach over the edge see black there"),
       Stereo(kCommon, kNothing, "num_threads", &P::num_threads, Between(-1, kMaxThreads),
              "Threads to use; -1 or 0: all cores"),
       Hpm(kCommon, kRounding, "device", &H::device, OneOf({"auto", "cpu", "cuda"}),

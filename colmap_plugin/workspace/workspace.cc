@@ -325,7 +325,7 @@ void Workspace::MakeCameras(const LogSink& log, const CancelToken& cancel) {
 }
 
 void Workspace::FindMasks(const LogSink& log) {
-  mask_paths_.assign(num_images(), {});
+  masks_.assign(num_images(), {});
   const fs::path& folder = options_.mask_path;
   if (folder.empty()) return;
   constexpr const char* kNaming =
@@ -350,7 +350,7 @@ void Workspace::FindMasks(const LogSink& log) {
                                  file_sizes_[i]->width,
                                  file_sizes_[i]->height));
     } else {
-      mask_paths_[i] = mask.path;
+      masks_[i] = mask;
     }
   }
   const auto refuse = [&](const std::string& what) {

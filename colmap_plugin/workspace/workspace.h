@@ -3,7 +3,7 @@
 #pragma once
 
 #include "colmap_plugin/formats/sparse_model.h"
-#include "colmap_plugin/workspace/image_size.h"
+#include "colmap_plugin/workspace/image_files.h"
 #include "src/base/cancel.h"
 #include "src/base/log.h"
 #include "src/core/camera.h"
@@ -82,7 +82,10 @@ class Workspace {
   }
   // The image's mask; empty if it has none.
   const std::filesystem::path& MaskPath(int index) const {
-    return mask_paths_[index];
+    return masks_[index].path;
+  }
+  const std::optional<ImageSize>& mask_size(int index) const {
+    return masks_[index].size;
   }
   // How the image file becomes the grey image of the camera's size.
   ImageDecoding Decoding(int index) const;
@@ -126,7 +129,7 @@ class Workspace {
   std::vector<Eigen::Vector3d> centers_;
   std::vector<bool> usable_;
   std::vector<std::filesystem::path> image_paths_;
-  std::vector<std::filesystem::path> mask_paths_;
+  std::vector<ImageFile> masks_;
   std::vector<bool> has_picture_;
   std::vector<std::optional<ImageSize>> file_sizes_;
   std::optional<GreyRange> deep_range_;

@@ -1,6 +1,8 @@
 #include "src/image/gaps.h"
 
 #include "src/base/error.h"
+#include "src/base/input_file.h"
+#include "src/image/decode_picture.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -22,21 +24,19 @@ void ApplyMask(const GrayImage& mask, GrayImage* image) {
 
 GrayImage ResizedMask(const GrayImage& mask, int width, int height) {
   if (mask.width == width && mask.height == height) return mask;
-  cv::Mat shown(mask.height, mask.width, CV_8U);
-  std::transform(mask.data.begin(),
-                 mask.data.end(),
-                 shown.ptr<uint8_t>(),
-                 [](uint8_t value) { return value == 0 ? 0 : 255; });
+  // OpenCV does not write to it.
+  const cv::Mat from(
+      mask.height, mask.width, CV_8U, const_cast<uint8_t*>(mask.data.data()));
   cv::Mat resized;
-  cv::resize(shown, resized, {width, height}, 0, 0, cv::INTER_AREA);
+  cv::resize(from, resized, {width, height}, 0, 0, cv::INTER_AREA);
   GrayImage result;
   result.width = width;
   result.height = height;
   result.data.reserve(resized.total());
   for (int row = 0; row < height; ++row) {
-    const uint8_t* from = resized.ptr<uint8_t>(row);
+    const uint8_t* line = resized.ptr<uint8_t>(row);
     for (int col = 0; col < width; ++col)
-      result.data.push_back(from[col] < 128 ? 0 : 255);
+      result.data.push_back(line[col] < 128 ? 0 : 255);
   }
   return result;
 }
@@ -44,12 +44,12 @@ GrayImage ResizedMask(const GrayImage& mask, int width, int height) {
 GrayImage LoadMask(const std::filesystem::path& path) {
   cv::Mat image;
   try {
-    image = cv::imread(path.string(),
-                       cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
-  } catch (const cv::Exception&) {
-    image.release();
-  }
-  if (image.empty()) {
+    image = DecodePicture(path,
+                          cv::IMREAD_GRAYSCALE | cv::IMREAD_ANYDEPTH |
+                              cv::IMREAD_IGNORE_ORIENTATION);
+  } catch (const UnreadableFile&) {
+    throw;
+  } catch (const Error&) {
     throw Error(ErrorCode::kBadInput,
                 path.string() +
                     ": this mask cannot be decoded; write it again as PNG, 0 "
@@ -58,11 +58,9 @@ GrayImage LoadMask(const std::filesystem::path& path) {
   GrayImage mask;
   mask.width = image.cols;
   mask.height = image.rows;
-  mask.data.reserve(image.total());
-  for (int row = 0; row < image.rows; ++row) {
-    const uint8_t* from = image.ptr<uint8_t>(row);
-    mask.data.insert(mask.data.end(), from, from + image.cols);
-  }
+  mask.data.resize(image.total());
+  cv::Mat to(image.rows, image.cols, CV_8U, mask.data.data());
+  cv::compare(image, 0, to, cv::CMP_NE);
   return mask;
 }
 

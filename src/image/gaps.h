@@ -13,10 +13,11 @@ namespace hpm {
 // elsewhere. An image without such a pixel stays as it is.
 void ApplyMask(const GrayImage& mask, GrayImage* image);
 
-// Brought to another size; a pixel is masked if most of what it covers is.
+// Of a loaded mask; a pixel is masked if most of what it covers is.
 GrayImage ResizedMask(const GrayImage& mask, int width, int height);
 
-// Grey values of an image file; throws Error(kBadInput) naming it.
+// 0 where the samples of an image file are, whatever bits they have, and 255
+// elsewhere. Throws Error(kBadInput) naming it.
 GrayImage LoadMask(const std::filesystem::path& path);
 
 }  // namespace hpm

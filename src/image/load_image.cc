@@ -1,15 +1,12 @@
 #include "src/image/load_image.h"
 
 #include "src/base/error.h"
-#include "src/base/input_file.h"
+#include "src/image/decode_picture.h"
 #include "src/image/gaps.h"
-#include "src/image/image_integrity.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <new>
-#include <string>
 #include <vector>
 
 #include <opencv2/imgcodecs.hpp>
@@ -17,42 +14,6 @@
 
 namespace hpm {
 namespace {
-
-// What OpenCV can be given at once.
-constexpr uint64_t kMaxPictureBytes = INT32_MAX;
-
-// Read here and as a whole: decoders take an error of the disk for the end of
-// the file, and fill what is missing.
-cv::Mat Decode(const std::filesystem::path& path, int flags) {
-  const std::string file = ReadWholeFile(path, kMaxPictureBytes);
-  if (!IsWholePicture(file)) {
-    throw Error(ErrorCode::kBadInput,
-                path.string() +
-                    ": the end of the file is missing; undistort the images "
-                    "again or copy the file again");
-  }
-  // OpenCV refuses more than 2^30 pixels by itself, from the header. It does
-  // not write to the file's bytes.
-  const cv::Mat bytes(
-      1, static_cast<int>(file.size()), CV_8U, const_cast<char*>(file.data()));
-  cv::Mat image;
-  try {
-    if (!file.empty()) image = cv::imdecode(bytes, flags);
-  } catch (const cv::Exception& e) {
-    // No fault of the file's.
-    if (e.code == cv::Error::StsNoMem) throw std::bad_alloc();
-    throw Error(ErrorCode::kBadInput,
-                path.string() + ": cannot be decoded (" + e.err +
-                    "); convert it to PNG or TIFF with 8 or 16 bits");
-  }
-  if (image.empty()) {
-    throw Error(ErrorCode::kBadInput,
-                path.string() +
-                    ": damaged or of a kind that cannot be decoded; undistort "
-                    "the images again or convert it to JPEG, PNG or TIFF");
-  }
-  return image;
-}
 
 int FlagsFor(int reduction) {
   int flags = cv::IMREAD_COLOR;
@@ -81,7 +42,7 @@ GrayImage ToGray(const cv::Mat& bgr) {
 
 // Samples of any kind, with the same weights; 0 where there is no value.
 cv::Mat DecodeDeep(const std::filesystem::path& path) {
-  const cv::Mat image = Decode(path, cv::IMREAD_UNCHANGED);
+  const cv::Mat image = DecodePicture(path, cv::IMREAD_UNCHANGED);
   const int num_channels = image.channels();
   cv::Mat gray(image.rows, image.cols, CV_32F);
   cv::Mat samples;
@@ -218,7 +179,8 @@ GrayImage Load(const std::filesystem::path& path,
     cv::resize(deep, resized, {width, height}, 0, 0, cv::INTER_AREA);
     return Stretch(resized, *decoding.stretch);
   }
-  const GrayImage gray = ToGray(Decode(path, FlagsFor(decoding.reduction)));
+  const GrayImage gray =
+      ToGray(DecodePicture(path, FlagsFor(decoding.reduction)));
   if (decoding.reduction == 1) {
     if (gray.width == width && gray.height == height) return gray;
     return Resize(gray, width, height);

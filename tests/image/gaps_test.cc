@@ -57,7 +57,7 @@ TEST(Gaps, ShrunkImagesDoNotMixWhatShowsNothingWithWhatDoes) {
 }
 
 TEST(Gaps, AMaskIsScaledWithItsImage) {
-  GrayImage mask = Filled(8, 8, 200);
+  GrayImage mask = Filled(8, 8, 255);
   Fill(&mask, 0, 0, 3, 8);
   const GrayImage half = ResizedMask(mask, 4, 4);
   for (int row = 0; row < 4; ++row) {
@@ -87,13 +87,38 @@ TEST(Gaps, OnlyMasksMakeThemWhenAnImageIsLoaded) {
   }
 }
 
-TEST(Gaps, AMaskThatIsNoImageIsNamed) {
-  try {
-    LoadMask("nothing.png");
-    ADD_FAILURE() << "no error";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::kBadInput);
-    EXPECT_THAT(error.what(), testing::StartsWith("nothing.png: "));
+// In 16 bits 1 is as little black as in 8.
+TEST(Gaps, OnlyZeroMasksWhateverTheBits) {
+  const ScratchFolder folder;
+  for (const int type : {CV_8U, CV_16U}) {
+    cv::Mat samples = cv::Mat::zeros(1, 4, type);
+    samples.col(1).setTo(1);
+    samples.col(2).setTo(200);
+    if (type == CV_16U) samples.col(2).setTo(65535);
+    cv::imwrite((folder / "mask.png").string(), samples);
+    EXPECT_THAT(LoadMask(folder / "mask.png").data,
+                ElementsAre(0, 255, 255, 0));
+  }
+}
+
+// What is missing is not to be filled with black or white.
+TEST(Gaps, AMaskThatIsNoWholeImageIsNamed) {
+  const ScratchFolder folder;
+  const std::filesystem::path path = folder / "mask.png";
+  cv::Mat noise(40, 60, CV_8U);
+  cv::randu(noise, 0, 256);
+  cv::imwrite(path.string(), noise);
+  EXPECT_EQ(LoadMask(path).width, 60);
+  std::filesystem::resize_file(path, std::filesystem::file_size(path) / 2);
+  for (const bool is_cut : {true, false}) {
+    if (!is_cut) WriteFile(path, "nothing");
+    try {
+      LoadMask(path);
+      ADD_FAILURE() << "no error";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::kBadInput);
+      EXPECT_THAT(error.what(), testing::StartsWith(path.string() + ": "));
+    }
   }
 }
 

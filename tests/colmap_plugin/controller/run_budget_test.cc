@@ -24,8 +24,8 @@ class RunBudgetTest : public testing::Test {
               {reinterpret_cast<char*>(bytes.data()), bytes.size()});
   }
 
-  uint64_t Decoded(int image) {
-    return DecodedBytes(scene_.Open(/*max_image_size=*/40), image);
+  uint64_t Decoded(int image, const std::filesystem::path& masks = {}) {
+    return DecodedBytes(scene_.Open(/*max_image_size=*/40, masks), image);
   }
 
   uint64_t FileBytes(int image) {
@@ -60,6 +60,19 @@ TEST_F(RunBudgetTest, ALargeJpegIsDecodedAtReducedScale) {
   EXPECT_EQ(Decoded(0), FileBytes(0) + 200u * 150u * 4u);
   WriteImage(0, ".jpg", 16, CV_8UC3);
   EXPECT_EQ(Decoded(0), FileBytes(0) + 160u * 120u * 4u);
+}
+
+TEST_F(RunBudgetTest, AMaskIsDecodedAtFullSizeAfterItsImage) {
+  WriteImage(0, ".jpg", 16, CV_8UC3);
+  const std::filesystem::path masks = scene_.path() / "masks";
+  const std::filesystem::path mask = masks / (ViewName(0) + ".png");
+  std::filesystem::create_directory(masks);
+  cv::imwrite(mask.string(), cv::Mat(480, 640, CV_8U, cv::Scalar(1)));
+  EXPECT_EQ(Decoded(0, masks),
+            std::filesystem::file_size(mask) + 640u * 480u * 2u);
+  cv::imwrite(mask.string(), cv::Mat(480, 640, CV_16U, cv::Scalar(1)));
+  EXPECT_EQ(Decoded(0, masks),
+            std::filesystem::file_size(mask) + 640u * 480u * 3u);
 }
 
 TEST_F(RunBudgetTest, OneLargeSourceCounts) {

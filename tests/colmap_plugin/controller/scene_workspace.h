@@ -20,9 +20,11 @@ class SceneWorkspace {
   const std::filesystem::path& path() const { return folder_.path(); }
   const std::vector<RenderedView>& views() const { return views_; }
 
-  Workspace Open(int max_image_size = -1) const {
+  Workspace Open(int max_image_size = -1,
+                 const std::filesystem::path& masks = {}) const {
     WorkspaceOptions options;
     options.path = path();
+    options.mask_path = masks;
     options.max_image_size = max_image_size;
     return Workspace(options, [](LogLevel, const std::string&) {});
   }
