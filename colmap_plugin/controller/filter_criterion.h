@@ -1,5 +1,5 @@
-// The criteria of the filter of finished maps, and shares of pixels lost to
-// them.
+// The criteria of the filter of finished maps, what helps against them, and
+// shares of pixels lost to them.
 #pragma once
 
 #include <map>
@@ -38,6 +38,35 @@ inline const char* NameOf(FilterCriterion criterion) {
       break;
   }
   return "range";
+}
+
+// What may bring pixels back that the criterion took: an order to the user.
+inline const char* RemedyFor(FilterCriterion criterion) {
+  switch (criterion) {
+    case FilterCriterion::kFacing:
+      return "take more images of this side; a depth that cannot be is dropped "
+             "rightly";
+    case FilterCriterion::kAngle:
+      return "take images further apart, or lower "
+             "--PatchMatchStereo.filter_min_triangulation_angle";
+    case FilterCriterion::kGeometry:
+      return "check poses and overlap, look for things that move, reflect or "
+             "are seen by one image only, or raise "
+             "--PatchMatchStereo.filter_geom_consistency_max_cost";
+    case FilterCriterion::kCorrelation:
+      return "look for mirrors, glass, shadows that moved and masked parts of "
+             "sources, or lower --PatchMatchStereo.filter_min_ncc";
+    case FilterCriterion::kNumConsistent:
+      return "take more images, or lower "
+             "--PatchMatchStereo.filter_min_num_consistent";
+    case FilterCriterion::kUnexplained:
+      return "--Hpm.filter_min_agreement 0 keeps more of them; a mask leaves "
+             "them out";
+    case FilterCriterion::kRange:
+      break;
+  }
+  return "change --PatchMatchStereo.depth_min and "
+         "--PatchMatchStereo.depth_max";
 }
 
 // Share of an image's pixels, 0..1, per criterion that took any.

@@ -67,6 +67,7 @@ double Most(FilterCriterion criterion) {
   return criterion == FilterCriterion::kRange ? 0.95 : 0.5;
 }
 
+// With the values that were asked for.
 std::string Reason(FilterCriterion criterion,
                    const ControllerOptions& options) {
   const PatchMatchStereoOptions& colmap = options.patch_match;
@@ -74,39 +75,26 @@ std::string Reason(FilterCriterion criterion,
     case FilterCriterion::kFacing:
       return "all sources look at the back of the surface found";
     case FilterCriterion::kAngle:
-      return fmt::format(
-          "no source sees them under {:g} degrees or more: lower "
-          "--PatchMatchStereo.filter_min_triangulation_angle, or take images "
-          "further apart",
-          colmap.filter_min_triangulation_angle);
+      return fmt::format("no source sees them under {:g} degrees or more",
+                         colmap.filter_min_triangulation_angle);
     case FilterCriterion::kGeometry:
-      return fmt::format(
-          "the depths of no source agree within {:g} pixels: check poses and "
-          "overlap, or raise "
-          "--PatchMatchStereo.filter_geom_consistency_max_cost",
-          colmap.filter_geom_consistency_max_cost);
+      return fmt::format("the depths of no source agree within {:g} pixels",
+                         colmap.filter_geom_consistency_max_cost);
     case FilterCriterion::kCorrelation:
-      return fmt::format(
-          "no source correlates by {:g} or more: lower "
-          "--PatchMatchStereo.filter_min_ncc",
-          colmap.filter_min_ncc);
+      return fmt::format("no source correlates by {:g} or more",
+                         colmap.filter_min_ncc);
     case FilterCriterion::kNumConsistent:
-      return fmt::format(
-          "fewer than {} sources confirm them: lower "
-          "--PatchMatchStereo.filter_min_num_consistent",
-          colmap.filter_min_num_consistent);
+      return fmt::format("fewer than {} sources confirm them",
+                         colmap.filter_min_num_consistent);
     case FilterCriterion::kUnexplained:
       return "nothing but chance decides there, as in a sky: no texture, no "
-             "plane that explains it, and many sources disagree; "
-             "--Hpm.filter_min_agreement 0 keeps them";
+             "plane that explains it, and many sources disagree";
     case FilterCriterion::kRange:
       break;
   }
-  return fmt::format(
-      "they lie outside {:g} to {:g}: change --PatchMatchStereo.depth_min and "
-      "--PatchMatchStereo.depth_max",
-      options.problems.depth_min,
-      options.problems.depth_max);
+  return fmt::format("they lie outside {:g} to {:g}",
+                     options.problems.depth_min,
+                     options.problems.depth_max);
 }
 
 }  // namespace
@@ -169,12 +157,13 @@ std::vector<std::string> FilterWarnings(
   for (const auto& [criterion, here] : found) {
     lines.push_back(fmt::format(
         "{} of {} images lost most of their pixels to the filter ({}: {:.0f} "
-        "%), because {}",
+        "%), because {}: {}",
         here.num_images,
         losses_of_images.size(),
         here.first,
         100 * here.share,
-        Reason(criterion, options)));
+        Reason(criterion, options),
+        RemedyFor(criterion)));
   }
   return lines;
 }

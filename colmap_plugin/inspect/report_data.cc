@@ -1,26 +1,32 @@
 #include "colmap_plugin/inspect/report_data.h"
 
+#include "colmap_plugin/controller/run_budget.h"
 #include "colmap_plugin/inspect/thumbnails.h"
+#include "colmap_plugin/workspace/model_overview.h"
 #include "colmap_plugin/workspace/problem.h"
+#include "colmap_plugin/workspace/source_selection.h"
 #include "colmap_plugin/workspace/stamp.h"
 #include "src/base/error.h"
+#include "src/base/input_file.h"
+#include "src/engine/memory_plan.h"
 
 #include <algorithm>
-#include <fstream>
+#include <cmath>
+#include <filesystem>
 #include <map>
-#include <set>
+#include <numeric>
 
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 namespace hpm {
 namespace {
 
 // Empty for no values.
 std::optional<DepthSpan> SpanOf(std::vector<float> depths) {
-  depths.erase(
-      std::remove_if(
-          depths.begin(), depths.end(), [](float z) { return !(z > 0); }),
-      depths.end());
+  const auto is_no_depth = [](float z) { return !(z > 0 && std::isfinite(z)); };
+  depths.erase(std::remove_if(depths.begin(), depths.end(), is_no_depth),
+               depths.end());
   if (depths.empty()) return std::nullopt;
   const auto at = [&](double share) {
     const auto middle =
@@ -32,11 +38,17 @@ std::optional<DepthSpan> SpanOf(std::vector<float> depths) {
   return DepthSpan{at(0.02), at(0.98)};
 }
 
+// Null if there is none that can be used.
 nlohmann::json ReadRunRecord(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return nullptr;
+  constexpr uint64_t kMaxBytes = 1 << 30;
+  std::string text;
+  try {
+    text = ReadWholeFile(path, kMaxBytes);
+  } catch (const Error&) {
+    return nullptr;
+  }
   nlohmann::json json =
-      nlohmann::json::parse(file, nullptr, /*allow_exceptions=*/false);
+      nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
   return json.is_object() ? json : nlohmann::json(nullptr);
 }
 
@@ -52,46 +64,93 @@ double SumOf(const nlohmann::json& phases) {
 class Gatherer {
  public:
   Gatherer(const Workspace& workspace,
+           const ModelOverview& overview,
            const std::vector<StereoProblem>& problems,
+           const CancelToken& cancel,
            ReportData* data)
-      : workspace_(workspace), problems_(problems), data_(data) {
-    for (int p = 0; p < static_cast<int>(problems.size()); ++p) {
-      for (const int src : problems[p].src_images)
-        num_shared_[{problems[p].ref_image, src}] = 0;
-    }
-    depths_.resize(workspace.num_images());
-    const SparsePoints& points = workspace.model().points;
-    for (size_t i = 0; i < points.size(); ++i) Count(points[i]);
-  }
+      : workspace_(workspace),
+        tracks_(overview.tracks()),
+        selector_(workspace, tracks_),
+        problems_(problems),
+        cancel_(cancel),
+        data_(data) {}
 
   void GatherImage(size_t p) const {
+    cancel_.ThrowIfCancelled();
     const StereoProblem& problem = problems_[p];
     const int image = problem.ref_image;
     ReportedImage& to = data_->images[p];
     to.name = workspace_.ImageName(image);
     to.width = workspace_.camera(image).width;
     to.height = workspace_.camera(image).height;
-    for (const int src : problem.src_images) {
-      to.sources.push_back(
-          {workspace_.ImageName(src), num_shared_.at({image, src})});
-    }
-    to.sparse_depths = SpanOf(depths_[image]);
-    to.picture = PictureThumbnail(workspace_.ImagePath(image));
+    AddSources(problem, &to);
+    AddSparseDepths(image, &to);
     AddStatistics(&to);
     AddMaps(image, &to);
   }
 
- private:
-  void Count(const SparsePoint& point) {
-    const std::set<int> track(point.track.begin(), point.track.end());
-    for (const int a : track) {
-      if (!workspace_.usable(a)) continue;
-      depths_[a].push_back(static_cast<float>(workspace_.Depth(a, point.xyz)));
-      for (const int b : track) {
-        const auto pair = num_shared_.find({a, b});
-        if (pair != num_shared_.end()) ++pair->second;
+  // Of the worst images, where there are too many: those with the smallest
+  // share of pixels with a depth. Decoders take much more memory than pictures.
+  void GatherPictures() const {
+    std::vector<size_t> shown(data_->images.size());
+    std::iota(shown.begin(), shown.end(), size_t{0});
+    if (shown.size() > kMaxPictured) {
+      std::stable_sort(shown.begin(), shown.end(), [&](size_t a, size_t b) {
+        return Rank(data_->images[a]) < Rank(data_->images[b]);
+      });
+      for (size_t i = kMaxPictured; i < shown.size(); ++i) {
+        ReportedImage& hidden = data_->images[shown[i]];
+        hidden.depth.clear();
+        hidden.normal.clear();
       }
+      shown.resize(kMaxPictured);
     }
+    uint64_t largest = 0;
+    const auto cannot_be_decoded = [&](size_t p) {
+      const int image = problems_[p].ref_image;
+      const uint64_t bytes = DecodedBytes(workspace_, image);
+      if (!workspace_.has_picture(image) || bytes > MemoryLimit()) return true;
+      largest = std::max(largest, bytes);
+      return false;
+    };
+    shown.erase(std::remove_if(shown.begin(), shown.end(), cannot_be_decoded),
+                shown.end());
+    tbb::task_arena(ThreadsToDecode(largest)).execute([&] {
+      tbb::parallel_for(size_t{0}, shown.size(), [&](size_t i) {
+        cancel_.ThrowIfCancelled();
+        data_->images[shown[i]].picture = PictureThumbnail(
+            workspace_.ImagePath(problems_[shown[i]].ref_image));
+      });
+    });
+  }
+
+ private:
+  static double Rank(const ReportedImage& image) {
+    return image.has_maps ? image.valid_share.value_or(1) : 2;
+  }
+
+  void AddSources(const StereoProblem& problem, ReportedImage* to) const {
+    std::map<int, uint64_t> num_shared;
+    for (const SourceCandidate& candidate :
+         selector_.Candidates(problem.ref_image, /*min_angle=*/0, cancel_)) {
+      num_shared[candidate.image] = candidate.num_shared;
+    }
+    for (const int src : problem.src_images)
+      to->sources.push_back({workspace_.ImageName(src), num_shared[src]});
+  }
+
+  void AddSparseDepths(int image, ReportedImage* to) const {
+    if (!workspace_.usable(image)) return;
+    const SparsePoints& points = workspace_.model().points;
+    std::vector<float> depths;
+    const auto visit = [&](size_t i, size_t) {
+      depths.push_back(
+          static_cast<float>(workspace_.Depth(image, points[i].xyz)));
+      return !cancel_.cancelled();
+    };
+    tracks_.ForEachPoint(image, TrackIndex::Reads::kPoints, visit);
+    cancel_.ThrowIfCancelled();
+    to->sparse_depths = SpanOf(std::move(depths));
   }
 
   void AddStatistics(ReportedImage* to) const {
@@ -108,15 +167,17 @@ class Gatherer {
     const auto share = statistics.find("valid_pixel_share");
     if (share != statistics.end() && share->is_number())
       to->valid_share = share->get<double>();
+    to->seconds = SecondsOf(to->name);
+  }
+
+  // All stages of the last run, where it made this image.
+  std::optional<double> SecondsOf(const std::string& name) const {
+    const nlohmann::json& stages = Member(Member(data_->run, "images"), name);
+    if (!stages.is_object()) return std::nullopt;
     double seconds = 0;
-    // All stages of the last run, where it made this image.
-    const auto& run = data_->run;
-    if (run.is_object() && run.contains("images") &&
-        run["images"].contains(to->name)) {
-      for (const auto& [stage, result] : run["images"][to->name].items())
-        seconds += SumOf(result.value("seconds", nlohmann::json()));
-      to->seconds = seconds;
-    }
+    for (const nlohmann::json& result : stages)
+      seconds += SumOf(Member(result, "seconds"));
+    return seconds;
   }
 
   void AddMaps(int image, ReportedImage* to) const {
@@ -151,32 +212,42 @@ class Gatherer {
   }
 
   const Workspace& workspace_;
+  const TrackIndex& tracks_;
+  const SourceSelector selector_;
   const std::vector<StereoProblem>& problems_;
+  const CancelToken& cancel_;
   ReportData* data_;
-  std::map<std::pair<int, int>, int> num_shared_;
-  std::vector<std::vector<float>> depths_;  // of the sparse points, per image
 };
 
 }  // namespace
+
+const nlohmann::json& Member(const nlohmann::json& json,
+                             const std::string& key) {
+  static const nlohmann::json null;
+  const auto it = json.find(key);
+  return it == json.end() ? null : *it;
+}
 
 ReportData GatherReport(const ControllerOptions& options,
                         const LogSink& log,
                         const CancelToken& cancel) {
   const Workspace workspace(options.workspace, log, cancel);
+  const ModelOverview overview(workspace,
+                               options.problems.depth_min,
+                               options.problems.depth_max,
+                               cancel);
   const std::vector<StereoProblem> problems =
-      ReadProblems(workspace, options.problems, log);
+      ReadProblems(workspace, overview, options.problems, log, cancel);
   ReportData data;
   data.workspace = options.workspace.path.string();
-  data.stereo_path = workspace.StereoPath();
   data.stage =
       options.patch_match.geom_consistency ? "geometric" : "photometric";
   data.run = ReadRunRecord(workspace.StatePath() / "run.json");
   data.images.resize(problems.size());
-  const Gatherer gatherer(workspace, problems, &data);
-  tbb::parallel_for(size_t{0}, problems.size(), [&](size_t p) {
-    cancel.ThrowIfCancelled();
-    gatherer.GatherImage(p);
-  });
+  const Gatherer gatherer(workspace, overview, problems, cancel, &data);
+  tbb::parallel_for(
+      size_t{0}, problems.size(), [&](size_t p) { gatherer.GatherImage(p); });
+  gatherer.GatherPictures();
   return data;
 }
 

@@ -6,7 +6,8 @@
 #include "src/base/cancel.h"
 #include "src/base/log.h"
 
-#include <filesystem>
+#include <cstddef>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
@@ -19,7 +20,7 @@ namespace hpm {
 
 struct ReportedSource {
   std::string name;
-  int num_shared = 0;  // sparse points that both images see
+  uint64_t num_shared = 0;  // sparse points that both images see
 };
 
 struct DepthSpan {
@@ -38,18 +39,32 @@ struct ReportedImage {
   std::optional<double> seconds;
   // All but the extreme two percent: of the map, and of the sparse points.
   std::optional<DepthSpan> depths, sparse_depths;
-  // JPEG files.
+  // JPEG files; empty where there is none, or too many images to show all.
   std::string picture, depth, normal;
+
+  // Whether the depths reach far beyond what the sparse points let expect.
+  bool HasOddRange() const {
+    return depths && sparse_depths &&
+           (depths->far > 3 * sparse_depths->far ||
+            depths->near < sparse_depths->near / 3);
+  }
 };
+
+// Images whose pictures a page shows: a browser has to hold them all.
+constexpr size_t kMaxPictured = 300;
 
 struct ReportData {
   std::string program;  // name and version
   std::string workspace;
-  std::filesystem::path stereo_path;
-  std::string stage;   // "geometric" or "photometric"
-  nlohmann::json run;  // run.json, or null
-  std::vector<ReportedImage> images;
+  std::string stage;                  // "geometric" or "photometric"
+  nlohmann::json run;                 // run.json, or null
+  std::vector<ReportedImage> images;  // pictures: of the kMaxPictured worst
 };
+
+// Of an object that others may have written; null if there is no such member,
+// or no object.
+const nlohmann::json& Member(const nlohmann::json& json,
+                             const std::string& key);
 
 // Throws as a run would for a workspace that cannot be read; what is wrong with
 // single maps is in the data.

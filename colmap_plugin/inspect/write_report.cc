@@ -6,6 +6,10 @@
 
 namespace hpm {
 
+std::filesystem::path ReportPath(const ControllerOptions& options) {
+  return StereoPath(options.workspace) / "report.html";
+}
+
 std::filesystem::path WriteReport(const ControllerOptions& options,
                                   const std::filesystem::path& path,
                                   const std::string& program,
@@ -14,7 +18,7 @@ std::filesystem::path WriteReport(const ControllerOptions& options,
   ReportData data = GatherReport(options, log, cancel);
   data.program = program;
   const std::filesystem::path target =
-      path.empty() ? data.stereo_path / "report.html" : path;
+      path.empty() ? ReportPath(options) : path;
   WriteFileAtomically(target, ReportHtml(data));
   return target;
 }

@@ -9,7 +9,10 @@
 
 namespace hpm {
 
-// `program`: name and version. Empty path: stereo/report.html. Returns the
+// Where it is written unless a path is given: stereo/report.html.
+std::filesystem::path ReportPath(const ControllerOptions& options);
+
+// `program`: name and version. Empty path: ReportPath(). Returns the
 // path. Throws as GatherReport() and WriteFileAtomically() do.
 std::filesystem::path WriteReport(const ControllerOptions& options,
                                   const std::filesystem::path& path,

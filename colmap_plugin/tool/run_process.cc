@@ -11,9 +11,11 @@
 #include "colmap_plugin/tool/signals.h"
 #include "src/base/error.h"
 #include "src/base/platform/terminal.h"
+#include "src/base/retries.h"
 
 #include <chrono>
 #include <cstdlib>
+#include <exception>
 #include <iostream>
 #include <string>
 #include <string_view>
@@ -50,14 +52,19 @@ RunSummary RunStereo(const ControllerOptions& options,
       PatchMatchController(options, log, progress, cancel).Run();
   if (!options.hpm.report) return summary;
   try {
+    // Where nothing happened the page of the run before is still right.
+    if (summary.num_computed == 0 && summary.failed.empty() &&
+        Exists(ReportPath(options))) {
+      return summary;
+    }
     // What is wrong with the workspace was said by the run.
     const std::filesystem::path path =
         WriteReport(options, {}, VersionLine(), nullptr, cancel);
     log(LogLevel::kInfo, "Report: " + path.string());
-  } catch (const Error& error) {
-    // The maps are there all the same.
-    if (error.code() == ErrorCode::kInterrupted) return summary;
-    log(LogLevel::kWarning, fmt::format("no report: {}", error.what()));
+  } catch (const std::exception& error) {
+    // The maps are there all the same, and so is the summary.
+    if (!cancel.cancelled())
+      log(LogLevel::kWarning, fmt::format("no report: {}", error.what()));
   }
   return summary;
 }

@@ -8,11 +8,6 @@
 namespace hpm {
 namespace {
 
-bool IsPmvs(const WorkspaceOptions& workspace) {
-  return !workspace.format.empty() &&
-         (workspace.format[0] == 'P' || workspace.format[0] == 'p');
-}
-
 // Points of fusion must be seen by --StereoFusion.min_num_pixels images, 5 by
 // default, of which few images leave little or nothing. 0: the default will do.
 int MinNumPixels(int num_images) {
@@ -74,10 +69,7 @@ std::vector<std::string> SummaryLines(const ControllerOptions& options,
                   static_cast<double>(summary.peak_memory_bytes) / (1 << 30),
                   summary.cpu_target.empty() ? "" : ", " + summary.cpu_target));
   const WorkspaceOptions& workspace = options.workspace;
-  const std::filesystem::path stereo =
-      workspace.path / (IsPmvs(workspace)
-                            ? "stereo-" + workspace.pmvs_option_name
-                            : std::string("stereo"));
+  const std::filesystem::path stereo = StereoPath(workspace);
   lines.push_back(fmt::format("Maps: {} and {}",
                               (stereo / "depth_maps").string(),
                               (stereo / "normal_maps").string()));

@@ -20,7 +20,8 @@ class ModelOverview {
                 double depth_max,
                 const CancelToken& cancel);
 
-  // Both may be asked by several threads at once.
+  // All may be asked by several threads at once.
+  const TrackIndex& tracks() const { return tracks_; }
   const AutomaticSources& automatic() const { return automatic_; }
   const DepthRanges& ranges() const { return ranges_; }
 

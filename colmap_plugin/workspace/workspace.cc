@@ -33,15 +33,6 @@ bool EqualsIgnoringCase(const std::string& text,
       });
 }
 
-bool IsPmvs(const WorkspaceOptions& options) {
-  if (EqualsIgnoringCase(options.format, "PMVS")) return true;
-  if (EqualsIgnoringCase(options.format, "COLMAP")) return false;
-  throw Error(
-      ErrorCode::kUsage,
-      fmt::format("--workspace_format {} is unknown; give COLMAP or PMVS",
-                  QuotedName(options.format)));
-}
-
 // PMVS models do not hold the sizes of their images.
 std::pair<int, int> SizeOfPmvsImage(const fs::path& path) {
   const std::optional<ImageSize> size = ReadImageSize(path);
@@ -83,6 +74,20 @@ Eigen::Vector3d CenterOf(const SparseImage& image) {
 }
 
 }  // namespace
+
+bool IsPmvs(const WorkspaceOptions& options) {
+  if (EqualsIgnoringCase(options.format, "PMVS")) return true;
+  if (EqualsIgnoringCase(options.format, "COLMAP")) return false;
+  throw Error(
+      ErrorCode::kUsage,
+      fmt::format("--workspace_format {} is unknown; give COLMAP or PMVS",
+                  QuotedName(options.format)));
+}
+
+fs::path StereoPath(const WorkspaceOptions& options) {
+  return options.path /
+         (IsPmvs(options) ? "stereo-" + options.pmvs_option_name : "stereo");
+}
 
 Workspace::Workspace(const WorkspaceOptions& options,
                      const LogSink& log,
@@ -140,11 +145,6 @@ ImageDecoding Workspace::Decoding(int index) const {
     decoding.file_height = file->height;
   }
   return decoding;
-}
-
-fs::path Workspace::StereoPath() const {
-  return options_.path /
-         (is_pmvs_ ? "stereo-" + options_.pmvs_option_name : "stereo");
 }
 
 fs::path Workspace::MapPath(int index,

@@ -27,6 +27,11 @@ struct WorkspaceOptions {
   std::filesystem::path mask_path;
 };
 
+// Throws Error(kUsage) for an unknown format.
+bool IsPmvs(const WorkspaceOptions& options);
+// WS/stereo or WS/stereo-<option name>.
+std::filesystem::path StereoPath(const WorkspaceOptions& options);
+
 enum class MapKind { kDepth, kNormal, kConsistencyGraph };
 
 class Workspace {
@@ -97,8 +102,7 @@ class Workspace {
   const std::filesystem::path& ImagePath(int index) const {
     return image_paths_[index];
   }
-  std::filesystem::path StereoPath()
-      const;  // WS/stereo or WS/stereo-<option name>
+  std::filesystem::path StereoPath() const { return hpm::StereoPath(options_); }
   std::filesystem::path PatchMatchCfgPath() const {
     return StereoPath() / "patch-match.cfg";
   }

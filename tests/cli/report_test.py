@@ -72,6 +72,20 @@ class Report(CliTest):
         self.assert_exit(self.run_tool(dense, *FAST, "--Hpm.report=0"), 0)
         self.assertFalse((dense / "stereo/report.html").exists())
 
+    def test_a_run_without_work_leaves_the_page_as_it_is(self):
+        dense = self.workspace()
+        self.assert_exit(self.run_tool(dense, *FAST), 0)
+        page = dense / "stereo/report.html"
+        before = page.stat().st_mtime_ns
+        self.assertNotIn("Report: ", self.run_tool(dense, *FAST).stdout)
+        self.assertEqual(page.stat().st_mtime_ns, before)
+        page.unlink()
+        self.assertIn("Report: ", self.run_tool(dense, *FAST).stdout)
+        (dense / "stereo/depth_maps/view00.png.geometric.bin").unlink()
+        before = page.stat().st_mtime_ns
+        self.assert_exit(self.run_tool(dense, *FAST), 0)
+        self.assertNotEqual(page.stat().st_mtime_ns, before)
+
     def test_names_cannot_become_part_of_the_page(self):
         dense = self.workspace()
         name = "<img src=x onerror=alert(1)>&'\"view.png"
