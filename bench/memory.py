@@ -33,7 +33,8 @@ def measure(hpm_mvs, scene, size, num_images):
         shutil.copyfile(scene / "stereo/fusion.cfg", dense / "stereo/fusion.cfg")
         program = subprocess.Popen(
             [hpm_mvs, "patch_match_stereo", "--workspace_path", dense,
-             "--PatchMatchStereo.max_image_size", str(size), "--Hpm.quality", "low"],
+             "--PatchMatchStereo.max_image_size", str(size), "--Hpm.quality", "low",
+             "--Hpm.report", "0"],
             stdout=subprocess.DEVNULL,
         )
         maps = dense / "stereo/depth_maps"

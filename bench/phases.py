@@ -30,7 +30,7 @@ def run(hpm_mvs, scene, threads, options):
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
         subprocess.run(
             [hpm_mvs, "patch_match_stereo", "--workspace_path", dense,
-             "--PatchMatchStereo.num_threads", str(threads), *options],
+             "--PatchMatchStereo.num_threads", str(threads), "--Hpm.report", "0", *options],
             check=True, stdout=subprocess.DEVNULL,
         )
         after = resource.getrusage(resource.RUSAGE_CHILDREN)

@@ -162,7 +162,7 @@ def main():
             make(dense, arguments.images, arguments.points, arguments.track,
                  *arguments.size, arguments.sources)
         run([arguments.hpm_mvs, "patch_match_stereo", "--workspace_path", dense,
-             "--PatchMatchStereo.num_threads", "2", *arguments.options],
+             "--PatchMatchStereo.num_threads", "2", "--Hpm.report", "0", *arguments.options],
             arguments.images, arguments.planning_only)
 
 

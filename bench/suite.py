@@ -25,7 +25,8 @@ import subprocess
 import sys
 import tempfile
 
-FILTER = "--PatchMatchStereo.filter"
+# Neither the filter nor the page for people is measured.
+UNLESS_GIVEN = {"--PatchMatchStereo.filter": 0, "--Hpm.report": 0}
 PARTS = ("all", "low_texture", "rest", "edges")  # of eval_depth
 DEPTH_SHARES = {"0.5%": 2, "1%": 3, "2%": 4, "5%": 5}  # index into eval_depth's thresholds
 
@@ -100,7 +101,8 @@ def score(build, scene, method, seed, options, keep):
         cpu_seconds = run(
             [build / "colmap_plugin/tool/hpm_mvs", "patch_match_stereo", "--workspace_path", folder,
              "--random_seed", seed, "--Hpm.method", method, "--PatchMatchStereo.num_threads", 1,
-             *([] if FILTER in options else [FILTER, 0]), *options], log)
+             *(word for pair in UNLESS_GIVEN.items() if pair[0] not in options for word in pair),
+             *options], log)
         record = json.loads((folder / "stereo/hpm_mvs/run.json").read_text())
         result = {
             "scene": scene.name, "method": method, "seed": seed, "cpu_seconds": cpu_seconds,
