@@ -94,17 +94,18 @@ std::string StatusText(const RunStatus& status) {
         status.failing.size(),
         status.failing.front());
   }
-  return text + (status.num_needed() == 0
-                     ? "complete\n"
-                     : "not complete: run patch_match_stereo with the same "
-                       "options\n");
+  if (status.IsComplete()) return text + "complete\n";
+  return text + (status.num_needed() > 0
+                     ? "not complete: run patch_match_stereo with the same "
+                       "options\n"
+                     : "not complete, and a run has nothing to do until these "
+                       "images are mended\n");
 }
 
 std::string StatusJson(const RunStatus& status) {
-  nlohmann::json json = {
-      {"complete", status.num_needed() == 0 && status.failing.empty()},
-      {"failing", status.failing},
-      {"stages", nlohmann::json::array()}};
+  nlohmann::json json = {{"complete", status.IsComplete()},
+                         {"failing", status.failing},
+                         {"stages", nlohmann::json::array()}};
   for (const StageStatus& stage : status.stages) {
     json["stages"].push_back({{"name", stage.name},
                               {"finished", stage.num_finished},

@@ -35,6 +35,8 @@ struct RunStatus {
   std::vector<std::string> failing;
 
   int num_needed() const;
+  // Whether there are finished maps of all references.
+  bool IsComplete() const { return num_needed() == 0 && failing.empty(); }
 };
 
 // Changes nothing. verify: reads all maps and compares their checksums, also

@@ -99,3 +99,4 @@ class Status(CliTest):
 
 if __name__ == "__main__":
     unittest.main()
+        self.assertRegex(self.status(code=4), r"view03.png\nnot complete, .* mended\n$")
