@@ -152,7 +152,11 @@ PatchMatchController::PatchMatchController(const ControllerOptions& options,
       cancel_(cancel) {}
 
 RunSummary PatchMatchController::Run() {
-  const auto start = std::chrono::steady_clock::now();
+  const auto seconds = [start = std::chrono::steady_clock::now()]() -> double {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() -
+                                         start)
+        .count();
+  };
   const ThreadSupply threads(options_.patch_match.num_threads, log_);
   const CpuTarget target = FindCpuTarget(options_.hpm.cpu_target);
 
@@ -196,6 +200,7 @@ RunSummary PatchMatchController::Run() {
     lock.ThrowIfLost();
     ForgetMaps(workspace, problems, plan);
   }
+  const double planning_seconds = seconds();
   for (bool is_done = false; !is_done;) {
     for (const StereoProblem& problem : problems) {
       // What is wrong was said when it was found.
@@ -254,11 +259,9 @@ RunSummary PatchMatchController::Run() {
        FilterWarnings(statistics.losses(), options_)) {
     log_(LogLevel::kWarning, line);
   }
-  RunSummary summary = statistics.Summarize(
-      names,
-      resources.backend_name,
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start)
-          .count());
+  RunSummary summary =
+      statistics.Summarize(names, resources.backend_name, seconds());
+  summary.planning_seconds = planning_seconds;
   summary.warnings = warnings_;
   summary.num_fusable = CountFinalMaps(workspace, plan);
   if (statistics.AnyComputed() || statistics.AnyFailed()) {

@@ -38,6 +38,7 @@ struct RunSummary {
       failed;  // names of images that could not be computed
   std::vector<std::string> warnings;  // of the log
   double seconds = 0;
+  double planning_seconds = 0;  // of these, before the first image
   // Of the final maps written in this run, 0..1; nothing where there were none.
   std::optional<double> valid_pixel_share;
   FilterLosses filter_losses;  // the same, of what has no depth

@@ -111,11 +111,13 @@ bool Measure(const Workspace& workspace,
 std::optional<GreyRange> FindDeepRange(const Workspace& workspace,
                                        ImageContents* contents,
                                        const LogSink& log,
-                                       const CancelToken& cancel) {
+                                       const CancelToken& cancel,
+                                       PlanAccess access) {
   std::vector<DeepImage> images = DeepImagesOf(workspace, contents, cancel);
   if (images.empty()) return std::nullopt;
   ReadRecord(workspace, &images);
-  if (Measure(workspace, cancel, &images)) WriteRecord(workspace, images);
+  if (Measure(workspace, cancel, &images) && access == PlanAccess::kRun)
+    WriteRecord(workspace, images);
   std::optional<GreyRange> range;
   bool can_be_cut = true;
   for (const DeepImage& image : images) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "colmap_plugin/controller/image_contents.h"
+#include "colmap_plugin/controller/stages.h"
 #include "colmap_plugin/workspace/workspace.h"
 #include "src/base/cancel.h"
 
@@ -15,10 +16,11 @@ namespace hpm {
 // when they are simply cut: then they are, as COLMAP does.
 //
 // Each image is decoded once for that; what was found is kept in the state
-// folder, by their contents.
+// folder, by their contents, if `access` lets files be changed.
 std::optional<GreyRange> FindDeepRange(const Workspace& workspace,
                                        ImageContents* contents,
                                        const LogSink& log,
-                                       const CancelToken& cancel);
+                                       const CancelToken& cancel,
+                                       PlanAccess access = PlanAccess::kRun);
 
 }  // namespace hpm

@@ -47,9 +47,9 @@ enum class MapState {
   kDamaged,
 };
 
-// How StagePlan looks at maps.
+// How planning looks at files.
 enum class PlanAccess {
-  kRun,      // corrects stamps
+  kRun,      // corrects stamps, keeps what it measured of deep images
   kInspect,  // changes no file
   kVerify,   // likewise, and trusts no length and time
 };

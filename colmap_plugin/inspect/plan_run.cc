@@ -4,7 +4,6 @@
 #include "colmap_plugin/controller/run_resources.h"
 #include "colmap_plugin/controller/thread_supply.h"
 #include "colmap_plugin/inspect/planned_run.h"
-#include "colmap_plugin/inspect/sample_run.h"
 #include "colmap_plugin/workspace/far_origin.h"
 #include "colmap_plugin/workspace/output_check.h"
 #include "colmap_plugin/workspace/run_lock.h"
@@ -12,6 +11,7 @@
 #include "src/engine/memory_plan.h"
 
 #include <algorithm>
+#include <chrono>
 #include <functional>
 #include <map>
 #include <memory>
@@ -49,21 +49,22 @@ class Planner {
     Attempt([&] { threads.emplace(options_.patch_match.num_threads, log_); });
     std::optional<CpuTarget> target;
     Attempt([&] { target = FindCpuTarget(options_.hpm.cpu_target); });
+    const auto start = std::chrono::steady_clock::now();
     const bool is_read = Attempt(
         [&] { run_ = std::make_unique<PlannedRun>(options_, log_, cancel_); });
     if (!is_read) return std::move(plan_);
-    CancelToken stop(&cancel_);
-    std::optional<RunLock> lock;
-    Attempt([&] { lock.emplace(run_->workspace().StatePath(), log_, &stop); });
+    Attempt([&] { ThrowIfLocked(run_->workspace().StatePath()); });
     const bool is_planned =
         Attempt([&] { run_->Plan(/*look_at_maps=*/true, log_); });
     if (!is_planned) return std::move(plan_);
+    planning_seconds_ =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start)
+            .count();
     WarnOfFarOrigin(run_->workspace(), run_->problems(), log_);
     SayImages();
     SaySizes();
     SayDisk();
     if (threads && target) SayMemory(*target, threads->num_threads());
-    lock.reset();
     if (plan_.problems.empty()) SayTime();
     return std::move(plan_);
   }
@@ -153,10 +154,12 @@ class Planner {
 
   void SayDisk() {
     const uint64_t bytes = BytesToWrite(run_->problems(), run_->plan());
-    const bool can_write = Attempt(
-        [&] { CheckOutputs(run_->workspace(), run_->problems(), bytes); });
+    Attempt([&] {
+      CheckOutputs(
+          run_->workspace(), run_->problems(), bytes, OutputAccess::kInspect);
+    });
     const std::optional<uint64_t> num_free =
-        can_write ? FreeBytes(run_->workspace().StatePath()) : std::nullopt;
+        FreeBytes(run_->workspace().StatePath());
     Say("Disk: {} to write{}",
         Gigabytes(bytes),
         num_free ? ", " + Gigabytes(*num_free) + " free" : "");
@@ -198,11 +201,7 @@ class Planner {
       Say("Time: could not be measured");
       return;
     }
-    Say("Time: about {}, from {:.1f} s of {} at {} pixels",
-        Duration(work / sample->work_per_second),
-        sample->seconds,
-        sample->image,
-        sample->max_image_size);
+    plan_.lines.push_back(TimeLine(work, planning_seconds_, *sample));
   }
 
   const ControllerOptions& options_;
@@ -210,10 +209,24 @@ class Planner {
   const LogSink& log_;
   const CancelToken& cancel_;
   std::unique_ptr<PlannedRun> run_;
+  double planning_seconds_ = 0;  // which the run takes, too
   RunPlan plan_;
 };
 
 }  // namespace
+
+std::string TimeLine(double work,
+                     double planning_seconds,
+                     const Sample& sample) {
+  return fmt::format(
+      "Time: about {}, from {:.1f} s of {} at {} pixels; {:.1f} s of it to "
+      "read and plan",
+      Duration(planning_seconds + work / sample.work_per_second),
+      sample.seconds,
+      sample.image,
+      sample.max_image_size,
+      planning_seconds);
+}
 
 RunPlan PlanRun(const ControllerOptions& options,
                 double sample_seconds,

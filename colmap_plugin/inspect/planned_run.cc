@@ -5,6 +5,7 @@
 #include "colmap_plugin/options/method_options.h"
 
 namespace hpm {
+
 PlannedRun::PlannedRun(const ControllerOptions& options,
                        const LogSink& log,
                        const CancelToken& cancel)
@@ -19,7 +20,7 @@ void PlannedRun::Plan(bool look_at_maps,
                       const LogSink& log,
                       PlanAccess access) {
   workspace_.StretchDeepImages(
-      FindDeepRange(workspace_, &contents_, log, cancel_));
+      FindDeepRange(workspace_, &contents_, log, cancel_, access));
   const ProblemOptions& problem_options = options_.problems;
   const ModelOverview overview(workspace_,
                                problem_options.depth_min,

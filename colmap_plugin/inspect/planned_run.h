@@ -1,4 +1,4 @@
-// The plan of a run without the run: what all who look from outside begin with.
+// The plan of a run without the run: what plan, check and status look at.
 #pragma once
 
 #include "colmap_plugin/controller/image_contents.h"
@@ -14,13 +14,13 @@ namespace hpm {
 
 class PlannedRun {
  public:
-  // Reads the workspace; changes none of its maps. Throws as the run would.
+  // Reads the workspace. Throws as the run would, here and below.
   PlannedRun(const ControllerOptions& options,
              const LogSink& log,
              const CancelToken& cancel);
 
-  // The problems and stages. look_at_maps: else all maps count as absent.
-  // access: none that changes files.
+  // Finds the problems and stages. look_at_maps: else all maps count as absent.
+  // access: kInspect or kVerify, so that no file is changed.
   void Plan(bool look_at_maps,
             const LogSink& log,
             PlanAccess access = PlanAccess::kInspect);

@@ -98,17 +98,16 @@ std::optional<Sample> MeasureSample(const PlannedRun& run,
   options.hpm.overwrite = true;
   options.hpm.previews = false;
   options.hpm.num_levels = -1;
-  const auto start = std::chrono::steady_clock::now();
-  const auto elapsed = [&] {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() -
-                                         start)
-        .count();
-  };
+  using Clock = std::chrono::steady_clock;
+  std::optional<Clock::time_point> start;  // of the computing of a round
+  double spent = 0;                        // by the rounds before
   const LogSink silent = [](LogLevel, const std::string&) {};
   CancelToken stop(&cancel);
   // A second run far slower than the first let expect is not waited for.
   const ProgressSink watch = [&](const ProgressEvent&) {
-    if (elapsed() > 2 * seconds) stop.Cancel();
+    if (!start) start = Clock::now();
+    const std::chrono::duration<double> here = Clock::now() - *start;
+    if (spent + here.count() > 2 * seconds) stop.Cancel();
   };
   std::optional<Sample> sample;
   int side = std::min(kFirstSide, full_side);
@@ -118,15 +117,17 @@ std::optional<Sample> MeasureSample(const PlannedRun& run,
       options.workspace.max_image_size = side;
       PlannedRun planned(options, silent, stop);
       planned.Plan(/*look_at_maps=*/false, silent);
-      const double begin = elapsed();
-      PatchMatchController(options, silent, watch, stop).Run();
-      const double taken = std::max(elapsed() - begin, 1e-3);
+      start.reset();
+      const RunSummary summary =
+          PatchMatchController(options, silent, watch, stop).Run();
+      const double taken =
+          std::max(summary.seconds - summary.planning_seconds, 1e-3);
+      spent += taken;
       sample = Sample{planned.Work() / taken,
                       taken,
                       run.workspace().ImageName(ref_image),
                       side};
-      const double growth =
-          std::sqrt(kShareToUse * (seconds - elapsed()) / taken);
+      const double growth = std::sqrt(kShareToUse * (seconds - spent) / taken);
       if (side == full_side || !(growth > 1.2)) break;
       side = std::min(full_side, static_cast<int>(side * growth));
     }

@@ -42,8 +42,9 @@ std::vector<Command> MakeTable() {
       {"plan", "Say what a run would do, how long it takes and what would stop it, without running",
        "Makes all checks that a run makes, and names all problems at once, not only the first: options, workspace, "
        "model, images, masks, patch-match.cfg, folders, disk, memory, device. Then: images and sources, working size, "
-       "disk and memory, what is kept from an earlier run, and a time that is extrapolated from one image computed "
-       "at a reduced size, in the folder for temporary files. Give the options of the run.",
+       "disk and memory, what is kept from an earlier run, and a time: that of reading and planning, and what follows "
+       "from one image computed at a reduced size, in the folder for temporary files. Changes nothing in the workspace. "
+       "Give the options of the run.",
        "that of the run: 0 nothing stops it, 4 some images cannot be computed",
        TakesOptions::kAll,
        {Row("sample_seconds", &C::sample_seconds, Between(0, 3600),

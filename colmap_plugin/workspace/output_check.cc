@@ -6,6 +6,7 @@
 #include "colmap_plugin/formats/text_reader.h"
 #include "colmap_plugin/workspace/stamp.h"
 #include "src/base/error.h"
+#include "src/base/platform/files.h"
 #include "src/base/retries.h"
 
 #include <filesystem>
@@ -18,10 +19,27 @@ namespace hpm {
 namespace fs = std::filesystem;
 namespace {
 
-// Creating a file is the only honest test: permission bits mean nothing to root
-// and access() nothing on a read-only or full disk.
-void CheckWritable(const fs::path& folder) {
-  AtomicFile trial(folder / "write_test");
+// The folder, or the first one above it that exists.
+fs::path FolderOnDisk(fs::path folder) {
+  while (!Exists(folder) && folder != folder.parent_path())
+    folder = folder.parent_path();
+  return folder;
+}
+
+// Creating a file is the only honest test: not every file system that refuses
+// says so in its permissions.
+void CheckWritable(const fs::path& folder, OutputAccess access) {
+  if (access == OutputAccess::kTry) {
+    AtomicFile trial(folder / "write_test");
+    return;
+  }
+  const fs::path on_disk = FolderOnDisk(folder);
+  if (IsFolder(on_disk) && MayWriteInto(on_disk)) return;
+  throw Error(ErrorCode::kBadInput,
+              fmt::format("cannot write into {}: {}; make {} a writable folder",
+                          folder.string(),
+                          IsFolder(on_disk) ? "no permission" : "not a folder",
+                          on_disk.string()));
 }
 
 void CheckFreeSpace(const fs::path& folder, uint64_t num_bytes) {
@@ -39,10 +57,16 @@ void CheckFreeSpace(const fs::path& folder, uint64_t num_bytes) {
 }
 
 // Asks the file system itself: what it allows differs from one to another.
-void CheckNameFits(const fs::path& path, const std::string& image_name) {
+bool IsTooLong(const fs::path& path) {
   std::error_code error;
-  if (fs::symlink_status(path, error).type() != fs::file_type::none ||
-      error != std::errc::filename_too_long) {
+  return fs::symlink_status(path, error).type() == fs::file_type::none &&
+         error == std::errc::filename_too_long;
+}
+
+void CheckNameFits(const fs::path& path, const std::string& image_name) {
+  // Below a folder that does not exist no name is looked at.
+  if (!IsTooLong(path) &&
+      !IsTooLong(FolderOnDisk(path.parent_path()) / path.filename())) {
     return;
   }
   throw Error(ErrorCode::kBadInput,
@@ -101,7 +125,7 @@ uint64_t DepthAndNormalMapBytes(const Camera& camera) {
 
 std::optional<uint64_t> FreeBytes(const fs::path& folder) {
   std::error_code error;
-  const fs::space_info disk = fs::space(folder, error);
+  const fs::space_info disk = fs::space(FolderOnDisk(folder), error);
   // Some network file systems report no sizes.
   if (error || disk.capacity == 0) return std::nullopt;
   return disk.available;
@@ -109,7 +133,8 @@ std::optional<uint64_t> FreeBytes(const fs::path& folder) {
 
 void CheckOutputs(const Workspace& workspace,
                   const std::vector<StereoProblem>& problems,
-                  uint64_t num_bytes) {
+                  uint64_t num_bytes,
+                  OutputAccess access) {
   std::set<fs::path> folders = {workspace.StatePath()};
   for (const StereoProblem& problem : problems) {
     if (!problem.is_reference) continue;
@@ -119,10 +144,10 @@ void CheckOutputs(const Workspace& workspace,
                          .parent_path());
     }
   }
-  for (const fs::path& folder : folders) CheckWritable(folder);
+  for (const fs::path& folder : folders) CheckWritable(folder, access);
   for (const StereoProblem& problem : problems) {
     const std::string& name = workspace.ImageName(problem.ref_image);
-    // The longest of the names an image's files get; the folders exist now.
+    // The longest of the names an image's files get.
     CheckNameFits(
         workspace.MapPath(problem.ref_image, MapKind::kNormal, "photometric"),
         name);
@@ -135,7 +160,7 @@ void PrepareOutputs(const Workspace& workspace,
                     const std::vector<StereoProblem>& problems,
                     uint64_t num_bytes,
                     const LogSink& log) {
-  CheckOutputs(workspace, problems, num_bytes);
+  CheckOutputs(workspace, problems, num_bytes, OutputAccess::kTry);
   if (!Exists(workspace.FusionCfgPath())) {
     std::vector<std::string> names;
     for (const StereoProblem& problem : problems) {

@@ -329,6 +329,31 @@ bool RunLock::ShowsSignOfLife(const std::string& contents,
   return !last || last->contents != contents || last->touched != first->touched;
 }
 
+void ThrowIfLocked(const fs::path& state_path, const LockRules& rules) {
+  const fs::path path = state_path / "lock";
+  const FileDescriptor file(RetryCall(path, [&] { return OpenLock(path); }));
+  if (file.get() < 0 && errno == ENOENT) return;
+  const std::optional<std::string> contents =
+      file.get() < 0 ? std::nullopt : ReadAll(file.get());
+  if (!contents) ThrowCannotRead(path, errno);
+  const auto owner = ParseLockOwner(*contents);
+  if (!owner) return;
+  bool is_alive = true;
+  if (owner->flock && rules.is_local(file.get())) {
+    is_alive = TryFlock(file.get()) == Flock::kHeldByAnother;
+  } else if (IsVisible(*owner, ThisProcess())) {
+    is_alive = IsAlive(*owner);
+  } else if (owner->heartbeat) {
+    struct stat status = {};
+    const std::chrono::nanoseconds now =
+        std::chrono::system_clock::now().time_since_epoch();
+    is_alive = fstat(file.get(), &status) != 0 ||
+               std::abs(now.count() - ModifiedNanoseconds(status)) <
+                   std::chrono::nanoseconds(rules.expiry).count();
+  }
+  if (is_alive) ThrowLocked(path, *owner, "");
+}
+
 void RunLock::Wait(std::chrono::milliseconds time) const {
   constexpr auto kStep = std::chrono::milliseconds(50);
   const auto end = std::chrono::steady_clock::now() + time;

@@ -83,4 +83,9 @@ class RunLock {
   std::thread heart_;
 };
 
+// Throws Error(kLocked) if a run is at work, as far as can be told at once and
+// without changing anything, Error(kBadInput) if the lock cannot be read.
+void ThrowIfLocked(const std::filesystem::path& state_path,
+                   const LockRules& rules = {});
+
 }  // namespace hpm

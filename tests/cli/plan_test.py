@@ -1,6 +1,7 @@
 """hpm_mvs plan: all that would stop a run at once, with the run's exit code, and nothing
 computed or changed."""
 import re
+import struct
 import subprocess
 import time
 import unittest
@@ -21,7 +22,7 @@ class Plan(CliTest):
 
     def test_a_good_workspace_is_exit_0_with_what_a_run_would_do(self):
         dense = self.workspace()
-        before = {p: p.read_bytes() for p in dense.rglob("*") if p.is_file()}
+        before = {p: p.is_file() and p.read_bytes() for p in dense.rglob("*")}
         result = self.plan(dense, *FAST, "--sample_seconds=0")
         self.assert_exit(result, 0)
         for line in (
@@ -36,7 +37,7 @@ class Plan(CliTest):
         ):
             self.assertIn(line, result.stdout)
         self.assertNotIn("Time: ", result.stdout)
-        self.assertEqual({p: p.read_bytes() for p in dense.rglob("*") if p.is_file()}, before)
+        self.assertEqual({p: p.is_file() and p.read_bytes() for p in dense.rglob("*")}, before)
         # Then a run of the same options, after which nothing is left.
         self.assert_exit(self.run_tool(dense, *FAST), 0)
         result = self.plan(dense, *FAST)
@@ -58,6 +59,29 @@ class Plan(CliTest):
         # Other tests run beside this one.
         self.assertLess(taken / 5, float(match[1]) + 1)
         self.assertGreater(taken * 5 + 1, float(match[1]))
+
+    def test_reading_a_large_model_is_no_work_of_the_sample(self):
+        dense = self.workspace(width=32, height=24)
+        points = dense / "sparse/points3D.bin"
+        data = points.read_bytes()
+        count = struct.unpack_from("<Q", data)[0]
+        most = 600000
+        points.write_bytes(
+            struct.pack("<Q", count + most)
+            + data[8:]
+            + b"".join(
+                struct.pack("<Qddd3sdQIIII", 10**6 + i, 0, 0, 0, b"", 1, 2, 1, 0, 2, 0)
+                for i in range(most)
+            )
+        )
+        result = self.plan(dense, *FAST, "--sample_seconds=2")
+        self.assert_exit(result, 0)
+        match = re.search(
+            r"Time: about \d+ s, from ([\d.]+) s of .*; ([\d.]+) s of it to read", result.stdout
+        )
+        self.assertIsNotNone(match, result.stdout)
+        sampled, reading = (float(value) for value in match.groups())
+        self.assertLess(sampled, reading)
 
     def test_all_problems_are_named_at_once_with_the_code_of_the_first(self):
         dense = self.workspace()

@@ -5,6 +5,7 @@ import os
 import subprocess
 import unittest
 
+from png import png
 from support import FAST, HPM_MVS, CliTest
 
 
@@ -86,11 +87,28 @@ class Status(CliTest):
         self.status("--verify", "1", code=8)
         self.assertEqual(files(), before)
 
+    def test_nothing_is_written_by_whoever_only_looks(self):
+        for path in (self.dense / "images").iterdir():
+            grey = b"".join((100 + 37 * i % 4000).to_bytes(2, "big") for i in range(96 * 72))
+            path.write_bytes(png(96, 72, grey, bits=16))
+        before = sorted(self.dense.rglob("*"))
+        for command in (["status"], ["check"], ["plan", "--sample_seconds=0"]):
+            result = subprocess.run(
+                [HPM_MVS, *command, "--workspace_path", str(self.dense), *FAST],
+                stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE,
+                text=True,
+                timeout=120,
+            )
+            self.assertIn(result.returncode, (0, 4, 8), result.stderr)
+            self.assertEqual(sorted(self.dense.rglob("*")), before, command)
+
     def test_images_that_cannot_be_computed_are_named_and_exit_4(self):
         (self.dense / "images/view03.png").unlink()
         self.assert_exit(self.run_tool(self.dense, *FAST), 4)
         _, answer = self.stages(code=4)
         self.assertEqual(answer["failing"], ["view03.png"])
+        self.assertRegex(self.status(code=4), r"view03.png\nnot complete, .* mended\n$")
 
     def test_a_folder_that_is_no_workspace_is_exit_3(self):
         (self.dense / "sparse/cameras.bin").unlink()
@@ -99,4 +117,3 @@ class Status(CliTest):
 
 if __name__ == "__main__":
     unittest.main()
-        self.assertRegex(self.status(code=4), r"view03.png\nnot complete, .* mended\n$")

@@ -30,6 +30,10 @@ int SyncFile(int fd);
 // network file systems, FUSE, clusters, virtual machines' shared folders.
 bool IsOnLocalFileSystem(int fd);
 
+// Whether permissions let this process make files in the folder; on a full disk
+// and some file systems it cannot all the same.
+bool MayWriteInto(const std::filesystem::path& folder);
+
 // Since 1970, as exact as the file system keeps it.
 int64_t ModifiedNanoseconds(const struct stat& status);
 

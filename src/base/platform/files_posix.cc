@@ -55,6 +55,10 @@ bool IsOnLocalFileSystem(int fd) {
 #endif
 }
 
+bool MayWriteInto(const std::filesystem::path& folder) {
+  return access(folder.c_str(), W_OK | X_OK) == 0;
+}
+
 int64_t ModifiedNanoseconds(const struct stat& status) {
 #ifdef __APPLE__
   const timespec& time = status.st_mtimespec;

@@ -202,6 +202,11 @@ bool IsOnLocalFileSystem(int fd) {
       HandleOf(fd), FileRemoteProtocolInfo, &remote, sizeof(remote));
 }
 
+bool MayWriteInto(const std::filesystem::path& folder) {
+  constexpr int kToWrite = 2;
+  return _waccess(folder.c_str(), kToWrite) == 0;
+}
+
 int64_t ModifiedNanoseconds(const struct stat& status) {
   return 100 * status.modified_100ns;
 }

@@ -40,6 +40,31 @@ TEST_F(OutputCheckTest, CreatesEveryFolderAndLeavesNoTrialFile) {
   EXPECT_THAT(left, testing::ElementsAre("fusion.cfg"));
 }
 
+TEST_F(OutputCheckTest, InspectsWithoutMakingAnything) {
+  const Workspace workspace = files_.Open();
+  WriteFile(workspace.StereoPath() / "a file", "");
+  const auto inspect = [&](uint64_t num_bytes) {
+    return ErrorOf([&] {
+      CheckOutputs(workspace, problems_, num_bytes, OutputAccess::kInspect);
+    });
+  };
+  EXPECT_FALSE(inspect(0));
+  const auto full = inspect(uint64_t{1} << 62);
+  ASSERT_TRUE(full);
+  EXPECT_EQ(full->code(), ErrorCode::kOutOfResources);
+  const auto entries = [&] {
+    return std::distance(fs::recursive_directory_iterator(files_.path()),
+                         fs::recursive_directory_iterator());
+  };
+  const auto before = entries();
+  WriteFile(workspace.StereoPath() / "normal_maps", "a file");
+  const auto error = inspect(0);
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->code(), ErrorCode::kBadInput);
+  EXPECT_THAT(error->what(), HasSubstr("normal_maps"));
+  EXPECT_EQ(entries(), before + 1);
+}
+
 TEST_F(OutputCheckTest, WritesFusionCfgOnlyIfThereIsNone) {
   const Workspace workspace = files_.Open();
   PrepareOutputs(workspace, problems_, 0, files_.Log());
@@ -79,6 +104,15 @@ TEST_F(OutputCheckTest, NamesTooLongForTheirMapsAreToldBeforehand) {
     const auto error =
         ErrorOf([&] { PrepareOutputs(workspace, problems_, 0, files.Log()); });
     ASSERT_EQ(error.has_value(), length == 240);
+    // No folder for maps is there yet.
+    TestWorkspace fresh;
+    fresh.AddImage(std::string(length, 'a'), {0, 0, 0});
+    fresh.AddImage("b.jpg", {1, 0, 0});
+    EXPECT_EQ(ErrorOf([&] {
+                CheckOutputs(
+                    fresh.Open(), problems_, 0, OutputAccess::kInspect);
+              }).has_value(),
+              length == 240);
     if (!error) continue;
     EXPECT_EQ(error->code(), ErrorCode::kBadInput);
     EXPECT_THAT(error->what(), HasSubstr("'aaa"));

@@ -319,6 +319,30 @@ TEST_F(FarLockTest, WaitingCanBeInterrupted) {
   EXPECT_EQ(error->code(), ErrorCode::kInterrupted);
 }
 
+TEST_F(RunLockTest, LookingTellsWhoIsAtWorkAndChangesNothing) {
+  EXPECT_NO_THROW(ThrowIfLocked(state()));
+  EXPECT_EQ(folder_.CountFiles(), 0u);
+  for (const LockRules& rules : {FastRules(), FarRules()}) {
+    const pid_t owner = ForkOwner(state(), rules);
+    ASSERT_GT(owner, 0);
+    const std::string contents = ReadFile(lock());
+    const auto error = ErrorOf([&] { ThrowIfLocked(state(), rules); });
+    Kill(owner);
+    ASSERT_TRUE(error);
+    EXPECT_EQ(error->code(), ErrorCode::kLocked);
+    EXPECT_THAT(error->what(), HasSubstr(std::to_string(owner)));
+    EXPECT_NO_THROW(ThrowIfLocked(state(), rules));
+    EXPECT_EQ(ReadFile(lock()), contents);
+  }
+}
+
+TEST_F(FarLockTest, LookingTakesALongSilenceForTheEnd) {
+  WriteForeignLock(10);
+  EXPECT_TRUE(ErrorOf([&] { ThrowIfLocked(state(), FarRules()); }));
+  SetAge(lock(), 4000);
+  EXPECT_FALSE(ErrorOf([&] { ThrowIfLocked(state(), FarRules()); }));
+}
+
 TEST_F(RunLockTest, TheLockIsTouchedWhileItIsHeld) {
   const TestLock held(state());
   SetAge(lock(), 1000);
