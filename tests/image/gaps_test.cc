@@ -104,7 +104,7 @@ TEST(Gaps, OnlyZeroMasksWhateverTheBits) {
 // What is missing is not to be filled with black or white.
 TEST(Gaps, AMaskThatIsNoWholeImageIsNamed) {
   const ScratchFolder folder;
-  const std::filesystem::path path = folder / "mask.png";
+  const std::filesystem::path path = folder / "mask.jpg";
   cv::Mat noise(40, 60, CV_8U);
   cv::randu(noise, 0, 256);
   cv::imwrite(path.string(), noise);

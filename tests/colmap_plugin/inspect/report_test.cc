@@ -1,9 +1,6 @@
-#include "colmap_plugin/formats/map_file.h"
 #include "colmap_plugin/inspect/report_data.h"
 #include "colmap_plugin/inspect/report_html.h"
 #include "tests/colmap_plugin/workspace/test_workspace.h"
-
-#include <algorithm>
 
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
@@ -41,6 +38,19 @@ class ReportTest : public testing::Test {
     options.problems.depth_min = 1;
     options.problems.depth_max = 10;
     return GatherReport(options, files_.Log(), CancelToken());
+  }
+
+  // Of 2x1 pixels.
+  void WriteMapOf(int image,
+                  const char* folder,
+                  int num_channels,
+                  const std::vector<float>& values) {
+    std::string bytes = fmt::format("2&1&{}&", num_channels);
+    bytes.append(reinterpret_cast<const char*>(values.data()),
+                 values.size() * sizeof(float));
+    WriteFile(
+        files_.path() / "stereo" / folder / (NameOf(image) + ".geometric.bin"),
+        bytes);
   }
 
   static std::string NameOf(int i) { return fmt::format("{:03}.png", i); }
@@ -81,12 +91,8 @@ TEST_F(ReportTest, ShowsPicturesOfTheWorstImagesOnly) {
   AddImages(count);
   for (int i = 0; i < count; ++i) {
     // Half of the pixels, but for the last.
-    const float right = i == count - 1 ? 0 : 3;
-    const auto map = [&](const char* kind) {
-      return files_.path() / "stereo" / kind / (NameOf(i) + ".geometric.bin");
-    };
-    WriteMap(map("depth_maps"), {2, 1, 1, {0, right}});
-    WriteMap(map("normal_maps"), {2, 1, 3, {0, 0, 0, 0, 0, -1}});
+    WriteMapOf(i, "depth_maps", 1, {0, i == count - 1 ? 0.f : 3.f});
+    WriteMapOf(i, "normal_maps", 3, {0, 0, 0, 0, 0, -1});
   }
   const ReportData data = Gather();
   std::vector<int> hidden;
