@@ -37,7 +37,11 @@ class DepthRanges {
   // Automatic if given_min or given_max is negative: [0.75 P1, 1.25 P99] of the
   // positive depths of the points whose track holds the image, one pass over
   // all points. Throws Error(kUsage) for NaN, min > max or a zero max.
-  DepthRanges(const Workspace& workspace, double given_min, double given_max);
+  // For the images of `given_for` their ranges count as given.
+  DepthRanges(const Workspace& workspace,
+              double given_min,
+              double given_max,
+              std::map<int, DepthRange> given_for = {});
   ~DepthRanges();
 
   // What to search. Always 0 < min < max: a lower end of zero becomes 0.001 *
@@ -49,13 +53,15 @@ class DepthRanges {
 
   // Whether ForImage() has to estimate.
   bool IsEstimated(int image) const {
-    return !given_ && too_few_.count(image) > 0;
+    return GivenFor(image) == nullptr && too_few_.count(image) > 0;
   }
 
   // What to publish: the given range, else everything.
-  DepthRange Published() const {
-    return given_.value_or(
-        DepthRange{0, std::numeric_limits<float>::infinity()});
+  DepthRange Published(int image) const {
+    const DepthRange* given = GivenFor(image);
+    return given != nullptr
+               ? *given
+               : DepthRange{0, std::numeric_limits<float>::infinity()};
   }
 
   // A factor, at both ends of a given range.
@@ -64,7 +70,15 @@ class DepthRanges {
  private:
   void ReadTracks(const Workspace& workspace);
 
+  // Null if none is given.
+  const DepthRange* GivenFor(int image) const {
+    const auto found = given_for_.find(image);
+    if (found != given_for_.end()) return &found->second;
+    return given_ ? &*given_ : nullptr;
+  }
+
   std::optional<DepthRange> given_;
+  std::map<int, DepthRange> given_for_;
   // Of each image: from tracks, if they are enough.
   std::vector<std::optional<DepthRange>> automatic_;
   // Depths of the points of tracks, of images where they are not enough.

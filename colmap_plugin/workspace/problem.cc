@@ -5,6 +5,7 @@
 #include "colmap_plugin/workspace/automatic_sources.h"
 #include "colmap_plugin/workspace/cfg_check.h"
 #include "colmap_plugin/workspace/depth_range.h"
+#include "colmap_plugin/workspace/given_ranges.h"
 #include "src/base/error.h"
 
 #include <algorithm>
@@ -45,7 +46,10 @@ class ProblemReader {
         path_(options.config_path.empty() ? workspace.PatchMatchCfgPath()
                                           : options.config_path),
         automatic_(workspace),
-        ranges_(workspace, options.depth_min, options.depth_max) {}
+        ranges_(workspace,
+                options.depth_min,
+                options.depth_max,
+                ReadGivenRanges(workspace, options.depth_ranges)) {}
 
   std::vector<StereoProblem> Read() {
     std::vector<bool> seen(workspace_.num_images(), false);
@@ -90,7 +94,7 @@ class ProblemReader {
       problem.src_images = std::move(sources);
       problem.depth_min = range->min;
       problem.depth_max = range->max;
-      problem.published = ranges_.Published();
+      problem.published = ranges_.Published(ref);
       problems.push_back(std::move(problem));
     }
     if (num_cut_ > 0 && log_) {

@@ -1,6 +1,7 @@
 #include "colmap_plugin/workspace/source_problems.h"
 
 #include "colmap_plugin/workspace/automatic_sources.h"
+#include "colmap_plugin/workspace/given_ranges.h"
 
 #include <algorithm>
 #include <map>
@@ -39,7 +40,10 @@ std::vector<StereoProblem> SourceProblems(
   if (listed_by.empty()) return {};
 
   const AutomaticSources automatic(workspace);
-  const DepthRanges ranges(workspace, options.depth_min, options.depth_max);
+  const DepthRanges ranges(workspace,
+                           options.depth_min,
+                           options.depth_max,
+                           ReadGivenRanges(workspace, options.depth_ranges));
   const auto max_num = static_cast<size_t>(
       std::clamp(options.max_num_src_images, 0, kMaxNumSources));
   std::vector<StereoProblem> result;

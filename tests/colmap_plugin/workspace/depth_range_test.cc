@@ -63,8 +63,8 @@ TEST(DepthRange, AGivenRangeIsSearchedBeyondAsFarAsThePointsGo) {
   const DepthRanges inner(workspace, 4, 5);
   EXPECT_FLOAT_EQ(inner.ForImage(0)->min, 3);
   EXPECT_FLOAT_EQ(inner.ForImage(0)->max, 10);
-  EXPECT_FLOAT_EQ(inner.Published().min, 4);
-  EXPECT_FLOAT_EQ(inner.Published().max, 5);
+  EXPECT_FLOAT_EQ(inner.Published(0).min, 4);
+  EXPECT_FLOAT_EQ(inner.Published(0).max, 5);
   const DepthRange apart = *DepthRanges(workspace, 1, 2).ForImage(0);
   EXPECT_FLOAT_EQ(apart.min, 1);
   EXPECT_FLOAT_EQ(apart.max, 8);  // far points may be wrong: 4 times
@@ -78,7 +78,7 @@ TEST(DepthRange, WithAnAutomaticRangeEverythingIsPublished) {
   files.AddImage("a.jpg", {0, 0, 0});
   files.AddPoint({0, 0, 4}, {0});
   const Workspace workspace = files.Open();
-  const DepthRange published = DepthRanges(workspace, -1, -1).Published();
+  const DepthRange published = DepthRanges(workspace, -1, -1).Published(0);
   EXPECT_EQ(published.min, 0);
   EXPECT_GT(published.max, 1e30);
 }
