@@ -172,8 +172,7 @@ RunSummary PatchMatchController::Run() {
 
   log_(LogLevel::kInfo, "Reading configuration...");
   const ProblemOptions& problem_options = options_.problems;
-  const ModelOverview overview(
-      workspace, problem_options.depth_min, problem_options.depth_max, stop);
+  const ModelOverview overview(workspace, problem_options, stop);
   std::vector<StereoProblem> problems =
       ReadProblems(workspace, overview, problem_options, log_, stop);
   const size_t num_references = problems.size();
@@ -282,20 +281,20 @@ RunEvents PatchMatchController::Events(
   RunEvents events;
   events.cancel = &cancel;
   events.started = [&, name_of](const RunProgress& at) {
-    const int image = problems[at.problem].ref_image;
     log_(LogLevel::kInfo,
          fmt::format("Processing view {} / {} for {} ({})",
                      at.number,
                      at.num_problems,
                      name_of(at.problem),
-                     plan.NameOf(at.stage, image)));
+                     plan.stages()[at.stage].title));
   };
   events.progress = [&, name_of](const RunProgress& at) {
     progress_({plan.stages()[at.stage].name,
                at.problem < 0 ? "" : name_of(at.problem),
                at.number,
                at.num_problems,
-               at.fraction});
+               at.fraction,
+               plan.stages()[at.stage].title});
   };
   events.failed = [&, name_of, statistics](
                       int, int problem, const Error& error) {

@@ -26,6 +26,7 @@ struct ProgressEvent {
   int num_images = 0;    // of the stage
   double fraction = 0;   // of the whole run, 0..1, by estimated work (kept
                          // images cost nothing)
+  std::string title;     // of the stage, for people; see stages.h
 };
 using ProgressSink = std::function<void(const ProgressEvent&)>;
 

@@ -11,6 +11,7 @@
 #include <map>
 #include <system_error>
 
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 namespace hpm {
@@ -19,12 +20,25 @@ namespace {
 constexpr const char* kLevelPrefix = "level_";
 constexpr const char* kGeometricPrefix = "geometric_";
 constexpr const char* kSourcePrefix = "source_";
+constexpr const char* kPhotometric = "photometric";
 
 bool StartsWith(const std::string& text, const char* prefix) {
   return text.rfind(prefix, 0) == 0;
 }
 
-std::vector<Stage> MakeStages(const Schedule& schedule) {
+std::string TitleOf(const StageSpec& spec, int number, int num_stages) {
+  std::string size = "full size";
+  if (spec.level == 1) size = "half size";
+  if (spec.level == 2) size = "quarter size";
+  if (spec.level > 2) size = fmt::format("1/{} of the size", 1 << spec.level);
+  return fmt::format("{} at {}, pass {} of {}",
+                     spec.geometric ? "making images agree" : "searching",
+                     size,
+                     number,
+                     num_stages);
+}
+
+std::vector<Stage> MakeStages(const Schedule& schedule, bool keep_photometric) {
   std::vector<Stage> stages;
   int num_geometric = 0;
   for (const StageSpec& spec : schedule.stages) {
@@ -37,9 +51,12 @@ std::vector<Stage> MakeStages(const Schedule& schedule) {
       stage.name += kGeometricPrefix + std::to_string(++num_geometric);
     } else {
       num_geometric = 0;
-      stage.name += "photometric";
-      stage.is_public = spec.level == 0;
+      stage.name += kPhotometric;
+      stage.is_public = spec.level == 0 && keep_photometric;
     }
+    stage.title = TitleOf(spec,
+                          static_cast<int>(stages.size()) + 1,
+                          static_cast<int>(schedule.stages.size()));
     stages.push_back(stage);
   }
   Stage& last = stages.back();
@@ -81,7 +98,7 @@ StagePlan::StagePlan(const Workspace& workspace,
       contents_(contents),
       cancel_(cancel),
       access_(access),
-      stages_(MakeStages(schedule)) {
+      stages_(MakeStages(schedule, options.hpm.keep_photometric)) {
   Update();
 }
 
@@ -311,7 +328,8 @@ void RemoveInnerMaps(const Workspace& workspace) {
        !error && it != end;
        it.increment(error)) {
     const std::string name = it->path().filename().string();
-    for (const char* prefix : {kLevelPrefix, kGeometricPrefix, kSourcePrefix}) {
+    for (const char* prefix :
+         {kLevelPrefix, kGeometricPrefix, kSourcePrefix, kPhotometric}) {
       if (StartsWith(name, prefix)) folders.push_back(it->path());
     }
   }

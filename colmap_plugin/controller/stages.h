@@ -23,6 +23,8 @@ struct Stage {
   // "photometric", "geometric_1", ..., "geometric"; at reduced scale
   // "level_2_photometric" and so on.
   std::string name;
+  // For people: "searching at half size, pass 1 of 5".
+  std::string title;
   StageSpec spec;
   // Its maps of references lie where COLMAP looks for them.
   bool is_public = false;

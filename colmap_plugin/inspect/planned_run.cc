@@ -22,10 +22,7 @@ void PlannedRun::Plan(bool look_at_maps,
   workspace_.StretchDeepImages(
       FindDeepRange(workspace_, &contents_, log, cancel_, access));
   const ProblemOptions& problem_options = options_.problems;
-  const ModelOverview overview(workspace_,
-                               problem_options.depth_min,
-                               problem_options.depth_max,
-                               cancel_);
+  const ModelOverview overview(workspace_, problem_options, cancel_);
   problems_ = ReadProblems(workspace_, overview, problem_options, log, cancel_);
   num_references_ = static_cast<int>(problems_.size());
   if (options_.patch_match.geom_consistency) {

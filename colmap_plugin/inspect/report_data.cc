@@ -232,10 +232,7 @@ ReportData GatherReport(const ControllerOptions& options,
                         const LogSink& log,
                         const CancelToken& cancel) {
   const Workspace workspace(options.workspace, log, cancel);
-  const ModelOverview overview(workspace,
-                               options.problems.depth_min,
-                               options.problems.depth_max,
-                               cancel);
+  const ModelOverview overview(workspace, options.problems, cancel);
   const std::vector<StereoProblem> problems =
       ReadProblems(workspace, overview, options.problems, log, cancel);
   ReportData data;

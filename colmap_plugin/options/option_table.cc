@@ -106,6 +106,7 @@ std::vector<OptionSpec> MakeTable() {
   const RowsOf<P> Stereo = {"PatchMatchStereo.", &C::patch_match};
   const RowsOf<H> Hpm = {"Hpm.", &C::hpm};
   const RowsOf<W> Workspace = {"", &C::workspace};
+  const RowsOf<I> HpmProblems = {"Hpm.", &C::problems};
   const RowsOf<W> HpmWorkspace = {"Hpm.", &C::workspace};
   const RowsOf<W> StereoWorkspace = {"PatchMatchStereo.", &C::workspace};
   const RowsOf<I> Problems = {"", &C::problems};
@@ -132,10 +133,18 @@ std::vector<OptionSpec> MakeTable() {
           "num_fine_geom_passes where they are not given (docs/benchmarks.md)"),
       Hpm(kCommon, kNothing, "overwrite", &H::overwrite, Anything(),
           "Compute maps again that are complete and made with the same options"),
+      Hpm(kCommon, kNothing, "keep_photometric", &H::keep_photometric, Anything(),
+          "0: do not publish *.photometric.bin beside *.geometric.bin, which saves half of the disk; with "
+          "PatchMatchStereo.geom_consistency 0 they are the result and stay"),
+      Hpm(kCommon, kNothing, "log_format", &H::log_format, OneOf({"text", "json"}),
+          "json: one object a line on standard output, for programs (docs/options.md)"),
       Hpm(kCommon, kNothing, "report", &H::report, Anything(),
           "Write stereo/report.html at the end: pictures, losses and times of all images, warnings with remedies"),
       Hpm(kCommon, kNothing, "previews", &H::previews, Anything(),
           "Write colour pictures of the maps to stereo/previews"),
+      HpmProblems(kCommon, kInputs, "depth_ranges", &I::depth_ranges, Anything(),
+                "File with lines IMAGE NEAR FAR: depth ranges of single images in model units, which go before depth_min "
+                "and depth_max; nothing outside is published"),
       HpmWorkspace(kCommon, kInputs, "mask_path", &W::mask_path, Anything(),
                 "Folder with masks of the undistorted images: of a/b.jpg the mask is a/b.jpg.png, as in COLMAP; where it "
                 "is 0 the image is ignored, as reference and as source; leave a margin of half a window around what is wanted, "

@@ -62,6 +62,19 @@ This file is the output of `hpm_mvs help --markdown`; a test compares the two.
   were made from them. `--Hpm.overwrite 1` computes all again.
 )";
 
+constexpr char kMarkdownLog[] = R"(
+## The log as JSON
+
+With `--Hpm.log_format json` standard output holds one object a line, also for warnings and errors. All have `event` and
+`time`, in seconds since the start. Members may be added.
+
+| event | members |
+|---|---|
+| `options` | `options`: an object with the value of every option, "the method's own" as a number |
+| `message` | `level`: `info`, `warning` or `error`; `message` |
+| `progress` | `stage`: name in files and stamps; `title`: for people; `image`: empty at the end of a stage; `image_number`, `num_images`: of the stage; `fraction`: of the whole run, by estimated work; `seconds_left`: null while unknown |
+)";
+
 constexpr char kMarkdownExitCodes[] = R"(
 ## Exit codes
 
@@ -210,7 +223,7 @@ std::string OptionsMarkdown() {
       if (option.group == group.group) text += MarkdownRow(option);
     }
   }
-  return text + kMarkdownExitCodes + CommandsMarkdown();
+  return text + kMarkdownExitCodes + kMarkdownLog + CommandsMarkdown();
 }
 
 }  // namespace hpm

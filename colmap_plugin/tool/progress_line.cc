@@ -12,7 +12,8 @@ namespace hpm {
 namespace {
 
 constexpr double kPlainInterval = 30;  // seconds
-constexpr double kEtaWeight = 0.3;     // of the newest prediction
+constexpr double kJsonInterval = 1;
+constexpr double kEtaWeight = 0.3;  // of the newest prediction
 
 // NaN, which would survive std::clamp, counts as no progress.
 double CleanFraction(double fraction) {
@@ -55,16 +56,26 @@ ProgressLine::ProgressLine(std::ostream* out,
                            std::ostream* err,
                            bool terminal,
                            int columns,
-                           Clock clock)
+                           Clock clock,
+                           bool json)
     : out_(out),
       err_(err),
-      terminal_(terminal),
+      json_(json),
+      terminal_(terminal && !json),
       columns_(columns),
-      clock_(std::move(clock)) {}
+      clock_(std::move(clock)),
+      start_time_(clock_()) {}
 
 void ProgressLine::Log(LogLevel level, const std::string& message) {
   static const char* const kPrefix[] = {"", "WARNING: ", "ERROR: "};
+  static const char* const kLevel[] = {"info", "warning", "error"};
   const std::lock_guard<std::mutex> lock(mutex_);
+  if (json_) {
+    WriteJson({{"event", "message"},
+               {"level", kLevel[static_cast<int>(level)]},
+               {"message", OneLine(message)}});
+    return;
+  }
   Erase();
   std::ostream& stream = level == LogLevel::kInfo ? *out_ : *err_;
   stream << kPrefix[static_cast<int>(level)] << OneLine(message) << '\n'
@@ -76,6 +87,23 @@ void ProgressLine::Update(const ProgressEvent& event) {
   const std::lock_guard<std::mutex> lock(mutex_);
   const double now = clock_();
   eta_.Update(now, CleanFraction(event.fraction));
+  if (json_) {
+    const bool is_new = event.stage != stage_ || event.image.empty();
+    if (!is_new && now - last_plain_time_ < kJsonInterval) return;
+    stage_ = event.stage;
+    last_plain_time_ = now;
+    const double left = eta_.Remaining(now);
+    WriteJson(
+        {{"event", "progress"},
+         {"stage", event.stage},
+         {"title", event.title},
+         {"image", event.image},
+         {"image_number", event.image_number},
+         {"num_images", event.num_images},
+         {"fraction", CleanFraction(event.fraction)},
+         {"seconds_left", left < 0 ? nlohmann::json() : nlohmann::json(left)}});
+    return;
+  }
   const std::string line = Render(event, now);
   if (terminal_) {
     Erase();
@@ -89,6 +117,23 @@ void ProgressLine::Update(const ProgressEvent& event) {
   }
 }
 
+void ProgressLine::Options(const nlohmann::json& options) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (json_) {
+    WriteJson({{"event", "options"}, {"options", options}});
+    return;
+  }
+  Erase();
+  *out_ << "Options:\n";
+  for (const auto& [name, value] : options.items()) {
+    const std::string text =
+        value.is_string() ? value.get<std::string>() : value.dump();
+    *out_ << "  " << name << ": " << OneLine(text) << '\n';
+  }
+  *out_ << std::flush;
+  Draw();
+}
+
 void ProgressLine::Close() {
   const std::lock_guard<std::mutex> lock(mutex_);
   Erase();
@@ -97,11 +142,12 @@ void ProgressLine::Close() {
 
 std::string ProgressLine::Render(const ProgressEvent& event, double now) const {
   const double fraction = CleanFraction(event.fraction);
-  std::string line = fmt::format("[{:3.0f}%] {}: image {}/{}",
-                                 100 * fraction,
-                                 event.stage,
-                                 event.image_number,
-                                 event.num_images);
+  std::string line =
+      fmt::format("[{:3.0f}%] {}: image {}/{}",
+                  100 * fraction,
+                  event.title.empty() ? event.stage : event.title,
+                  event.image_number,
+                  event.num_images);
   const double remaining = eta_.Remaining(now);
   if (remaining >= 0 && fraction < 1)
     line += ", " + FormatDuration(remaining) + " left";
@@ -111,6 +157,14 @@ std::string ProgressLine::Render(const ProgressEvent& event, double now) const {
 
 void ProgressLine::Erase() {
   if (terminal_ && !line_.empty()) *out_ << "\r\033[K" << std::flush;
+}
+
+void ProgressLine::WriteJson(nlohmann::json object) {
+  object["time"] = clock_() - start_time_;
+  // Image names are bytes, not always UTF-8.
+  *out_ << object.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)
+        << '\n'
+        << std::flush;
 }
 
 void ProgressLine::Draw() {

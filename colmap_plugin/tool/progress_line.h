@@ -11,6 +11,8 @@
 #include <mutex>
 #include <string>
 
+#include <nlohmann/json.hpp>
+
 namespace hpm {
 
 // Time that is left, from the share of the work done since the first Update().
@@ -33,13 +35,15 @@ class ProgressLine {
  public:
   using Clock = std::function<double()>;  // seconds, never going back
 
-  // Info lines and progress go to `out`, warnings and errors to `err`.
+  // Info lines and progress go to `out`, warnings and errors to `err`. json:
+  // all go to `out`, as one object a line; docs/options.md has the schema.
   // `columns`: width of the terminal; unused elsewhere.
   ProgressLine(std::ostream* out,
                std::ostream* err,
                bool terminal,
                int columns,
-               Clock clock);
+               Clock clock,
+               bool json = false);
   ~ProgressLine() { Close(); }
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
@@ -47,6 +51,8 @@ class ProgressLine {
   // All may be called from any thread.
   void Log(LogLevel level, const std::string& message);
   void Update(const ProgressEvent& event);
+  // The options of the run, an object with a member for each.
+  void Options(const nlohmann::json& options);
   // Takes the line off the terminal; a later Update() brings it back.
   void Close();
 
@@ -54,10 +60,12 @@ class ProgressLine {
   std::string Render(const ProgressEvent& event, double now) const;
   void Erase();
   void Draw();
+  void WriteJson(nlohmann::json object);
 
   std::mutex mutex_;
   std::ostream* out_;
   std::ostream* err_;
+  const bool json_;
   const bool terminal_;
   const int columns_;
   const Clock clock_;
@@ -65,6 +73,7 @@ class ProgressLine {
   std::string line_;   // on the terminal now
   std::string stage_;  // of the last plain line
   double last_plain_time_ = 0;
+  const double start_time_;
 };
 
 }  // namespace hpm

@@ -1,5 +1,6 @@
 #include "colmap_plugin/tool/run_command.h"
 
+#include "colmap_plugin/options/option_record.h"
 #include "colmap_plugin/tool/help.h"
 #include "colmap_plugin/tool/name_options.h"
 #include "colmap_plugin/tool/parse_command.h"
@@ -62,8 +63,12 @@ int RunAndReport(const ControllerOptions& options,
 int Guarded(const ToolEnvironment& tool,
             const ParsedOptions& parsed,
             const std::function<int(ProgressLine*)>& work) {
-  ProgressLine progress(
-      tool.out, tool.err, tool.terminal, tool.columns, tool.clock);
+  ProgressLine progress(tool.out,
+                        tool.err,
+                        tool.terminal,
+                        tool.columns,
+                        tool.clock,
+                        parsed.options.controller.hpm.log_format == "json");
   const auto fail = [&progress](ErrorCode code, const std::string& message) {
     progress.Close();
     progress.Log(LogLevel::kError, message);
@@ -108,6 +113,7 @@ int RunPatchMatchStereo(const std::vector<std::string>& arguments,
     progress->Log(LogLevel::kInfo, VersionLine());
     for (const std::string& note : parsed.notes)
       progress->Log(LogLevel::kWarning, note);
+    progress->Options(OptionRecord(parsed.options.controller));
     return RunAndReport(parsed.options.controller, tool, progress);
   });
 }

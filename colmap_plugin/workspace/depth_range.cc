@@ -59,7 +59,10 @@ DepthRanges::DepthRanges(const Workspace& workspace,
                          const TrackIndex& tracks,
                          double given_min,
                          double given_max,
-                         const CancelToken& cancel) {
+                         std::map<int, DepthRange> given_for,
+                         const CancelToken& cancel)
+    : given_for_(std::move(given_for)) {
+  for (auto& [image, range] : given_for_) range = Widened(range);
   ReadTracks(workspace, tracks, cancel);
   if (given_min < 0 || given_max < 0) return;
   given_ =
@@ -111,11 +114,11 @@ void DepthRanges::ReadTracks(const Workspace& workspace,
 }
 
 std::optional<DepthRange> DepthRanges::ForImage(int image) const {
-  if (given_) {
-    const DepthRange seen = automatic_[image].value_or(*given_);
+  if (const DepthRange* given = GivenFor(image)) {
+    const DepthRange seen = automatic_[image].value_or(*given);
     return DepthRange{
-        std::clamp(seen.min, given_->min / kSearchedBeyond, given_->min),
-        std::clamp(seen.max, given_->max, kSearchedBeyond * given_->max)};
+        std::clamp(seen.min, given->min / kSearchedBeyond, given->min),
+        std::clamp(seen.max, given->max, kSearchedBeyond * given->max)};
   }
   if (!IsEstimated(image)) return automatic_[image];
   return estimator_->Estimate(image, too_few_.at(image), automatic_);

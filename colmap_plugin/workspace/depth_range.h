@@ -38,12 +38,14 @@ class DepthRanges {
  public:
   // Automatic if given_min or given_max is negative: [0.75 P1, 1.25 P99] of the
   // positive depths of the points whose track holds the image, by several
-  // threads. Throws Error(kUsage) for NaN, min > max or a zero max,
+  // threads. For the images of `given_for` their ranges count as given.
+  // Throws Error(kUsage) for NaN, min > max or a zero max,
   // Error(kInterrupted).
   DepthRanges(const Workspace& workspace,
               const TrackIndex& tracks,
               double given_min,
               double given_max,
+              std::map<int, DepthRange> given_for = {},
               const CancelToken& cancel = {});
   ~DepthRanges();
 
@@ -57,13 +59,15 @@ class DepthRanges {
 
   // Whether ForImage() has to estimate.
   bool IsEstimated(int image) const {
-    return !given_ && too_few_.count(image) > 0;
+    return GivenFor(image) == nullptr && too_few_.count(image) > 0;
   }
 
   // What to publish: the given range, else everything.
-  DepthRange Published() const {
-    return given_.value_or(
-        DepthRange{0, std::numeric_limits<float>::infinity()});
+  DepthRange Published(int image) const {
+    const DepthRange* given = GivenFor(image);
+    return given != nullptr
+               ? *given
+               : DepthRange{0, std::numeric_limits<float>::infinity()};
   }
 
   // A factor, at both ends of a given range.
@@ -74,7 +78,15 @@ class DepthRanges {
                   const TrackIndex& tracks,
                   const CancelToken& cancel);
 
+  // Null if none is given.
+  const DepthRange* GivenFor(int image) const {
+    const auto found = given_for_.find(image);
+    if (found != given_for_.end()) return &found->second;
+    return given_ ? &*given_ : nullptr;
+  }
+
   std::optional<DepthRange> given_;
+  std::map<int, DepthRange> given_for_;
   // Of each image: from tracks, if they are enough.
   std::vector<std::optional<DepthRange>> automatic_;
   // Depths of the points of tracks, of images where they are not enough.

@@ -1,13 +1,20 @@
 #include "colmap_plugin/workspace/model_overview.h"
 
+#include "colmap_plugin/workspace/given_ranges.h"
+#include "colmap_plugin/workspace/problem.h"
+
 namespace hpm {
 
 ModelOverview::ModelOverview(const Workspace& workspace,
-                             double depth_min,
-                             double depth_max,
+                             const ProblemOptions& options,
                              const CancelToken& cancel)
     : tracks_(workspace, cancel),
       automatic_(workspace, tracks_, cancel),
-      ranges_(workspace, tracks_, depth_min, depth_max, cancel) {}
+      ranges_(workspace,
+              tracks_,
+              options.depth_min,
+              options.depth_max,
+              ReadGivenRanges(workspace, options.depth_ranges),
+              cancel) {}
 
 }  // namespace hpm

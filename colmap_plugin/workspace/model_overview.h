@@ -11,13 +11,14 @@
 
 namespace hpm {
 
+struct ProblemOptions;
+
 class ModelOverview {
  public:
-  // A depth range that the user gives, or negative; see DepthRanges. Keeps
-  // references to workspace and cancel. Throws as DepthRanges does.
+  // Of the options those of the depth range count. Keeps references to
+  // workspace and cancel. Throws as DepthRanges and ReadGivenRanges do.
   ModelOverview(const Workspace& workspace,
-                double depth_min,
-                double depth_max,
+                const ProblemOptions& options,
                 const CancelToken& cancel);
 
   // All may be asked by several threads at once.

@@ -116,7 +116,7 @@ class ProblemReader {
       problem.src_images = std::move(sources);
       problem.depth_min = range->min;
       problem.depth_max = range->max;
-      problem.published = ranges_.Published();
+      problem.published = ranges_.Published(ref);
       problems.push_back(std::move(problem));
     }
     if (num_cut_ > 0 && log_) {
@@ -322,8 +322,7 @@ std::vector<StereoProblem> ReadProblems(const Workspace& workspace,
                                         const ProblemOptions& options,
                                         const LogSink& log) {
   const CancelToken never;
-  const ModelOverview overview(
-      workspace, options.depth_min, options.depth_max, never);
+  const ModelOverview overview(workspace, options, never);
   return ReadProblems(workspace, overview, options, log, never);
 }
 

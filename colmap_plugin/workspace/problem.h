@@ -30,6 +30,7 @@ struct ProblemOptions {
   std::filesystem::path config_path;  // empty: the workspace's patch-match.cfg
   double depth_min = -1;              // both negative: automatic
   double depth_max = -1;
+  std::filesystem::path depth_ranges;  // see given_ranges.h; empty: none
   double min_triangulation_angle = 1;  // degrees
   int max_num_src_images =
       32;  // view masks have 32 bits; more are cut with a note

@@ -66,7 +66,8 @@ bool IsGivenByTheTest(const OptionSpec& option) {
                                        "config_path",
                                        "project_path",
                                        "workspace_format",
-                                       "Hpm.mask_path"};
+                                       "Hpm.mask_path",
+                                       "Hpm.depth_ranges"};
   return names.count(option.name) > 0;
 }
 

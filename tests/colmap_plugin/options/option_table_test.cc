@@ -137,6 +137,8 @@ TEST(OptionTableTest, EveryMemberOfHpmOptionsIsAnOption) {
                geom_max_error,
                num_levels,
                filter_min_agreement,
+               log_format,
+               keep_photometric,
                report,
                previews,
                overwrite] = HpmOptions();
@@ -145,6 +147,7 @@ TEST(OptionTableTest, EveryMemberOfHpmOptionsIsAnOption) {
   (void)num_geom_passes, (void)geom_weight, (void)geom_max_error,
       (void)num_levels, (void)filter_min_agreement;
   (void)report, (void)previews, (void)overwrite;
+  (void)log_format, (void)keep_photometric;
   (void)num_fine_iterations, (void)num_fine_geom_passes;
   (void)quality, (void)max_views, (void)weak_gradient;
   for (const char* name : {"method",
@@ -163,6 +166,8 @@ TEST(OptionTableTest, EveryMemberOfHpmOptionsIsAnOption) {
                            "geom_max_error",
                            "num_levels",
                            "filter_min_agreement",
+                           "log_format",
+                           "keep_photometric",
                            "report",
                            "previews",
                            "overwrite"}) {
@@ -281,6 +286,9 @@ const std::vector<Values>& ValueTable() {
       {"Hpm.geom_max_error", {"0", "5"}, {"-1"}, ">= 0"},
       {"Hpm.num_levels", {"-1", "8"}, {"-2", "9", "1.5"}, "-1 to 8"},
       {"Hpm.filter_min_agreement", {"0", "1"}, {"-0.1", "1.1"}, "0 to 1"},
+      {"Hpm.log_format", {"text", "json"}, {"xml", ""}, "text, json"},
+      bools("Hpm.keep_photometric"),
+      {"Hpm.depth_ranges", {"ranges.txt"}, {}, ""},
       bools("Hpm.report"),
       {"Hpm.mask_path", {"masks"}, {}, ""},
       bools("Hpm.previews"),

@@ -16,7 +16,7 @@ using testing::HasSubstr;
 using testing::Not;
 
 ProgressEvent Event(const std::string& image, int number, double fraction) {
-  return {"photometric", image, number, 10, fraction};
+  return {"photometric", image, number, 10, fraction, ""};
 }
 
 class ProgressLineTest : public testing::Test {
@@ -141,7 +141,7 @@ TEST_F(ProgressLineTest, OddFractionsStayWithinZeroAndHundred) {
 TEST_F(ProgressLineTest, GlobalLocaleChangesNothing) {
   const CommaLocale comma;
   ProgressLine line = Make(false);
-  line.Update({"photometric", "a", 1234, 5678, 0.5});
+  line.Update({"photometric", "a", 1234, 5678, 0.5, ""});
   EXPECT_THAT(out_.str(), HasSubstr("image 1234/5678"));
 }
 

@@ -69,8 +69,8 @@ TEST(DepthRange, AGivenRangeIsSearchedBeyondAsFarAsThePointsGo) {
   const DepthRanges inner(workspace, TrackIndex(workspace), 4, 5);
   EXPECT_FLOAT_EQ(inner.ForImage(0)->min, 3);
   EXPECT_FLOAT_EQ(inner.ForImage(0)->max, 10);
-  EXPECT_FLOAT_EQ(inner.Published().min, 4);
-  EXPECT_FLOAT_EQ(inner.Published().max, 5);
+  EXPECT_FLOAT_EQ(inner.Published(0).min, 4);
+  EXPECT_FLOAT_EQ(inner.Published(0).max, 5);
   const DepthRange apart =
       *DepthRanges(workspace, TrackIndex(workspace), 1, 2).ForImage(0);
   EXPECT_FLOAT_EQ(apart.min, 1);
@@ -87,7 +87,7 @@ TEST(DepthRange, WithAnAutomaticRangeEverythingIsPublished) {
   files.AddPoint({0, 0, 4}, {0});
   const Workspace workspace = files.Open();
   const DepthRange published =
-      DepthRanges(workspace, TrackIndex(workspace), -1, -1).Published();
+      DepthRanges(workspace, TrackIndex(workspace), -1, -1).Published(0);
   EXPECT_EQ(published.min, 0);
   EXPECT_GT(published.max, 1e30);
 }

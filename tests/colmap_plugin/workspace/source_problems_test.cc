@@ -25,8 +25,7 @@ class SourceProblemsTest : public testing::Test {
     files_.WriteCfg(cfg);
     const Workspace workspace = files_.Open();
     const CancelToken never;
-    const ModelOverview overview(
-        workspace, options.depth_min, options.depth_max, never);
+    const ModelOverview overview(workspace, options, never);
     return SourceProblems(workspace,
                           overview,
                           ReadProblems(workspace, options, nullptr),
