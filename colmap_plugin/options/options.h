@@ -6,6 +6,7 @@
 #include "colmap_plugin/workspace/problem.h"
 #include "colmap_plugin/workspace/workspace.h"
 #include "src/engine/method.h"
+#include "src/engine/run_spec.h"
 
 #include <string>
 
@@ -59,8 +60,8 @@ struct HpmOptions {
   double geom_weight = MethodParams().geom_weight;  // lambda of that term
   double geom_max_error = MethodParams().geom_max_error;  // pixels, its cap
   int num_levels = -1;  // of the hierarchy; -1: by method and image size
-  double filter_min_agreement = 0.5;  // see needed_views.h
-  bool report = true;                 // stereo/report.html at the end of a run
+  double filter_min_agreement = MapFilter().min_agreement;
+  bool report = true;      // stereo/report.html at the end of a run
   bool previews = false;   // colour pictures of the maps in stereo/previews
   bool overwrite = false;  // recompute maps that are complete
 };
