@@ -35,11 +35,8 @@ class CpuBackend : public Backend {
   }
 
   uint64_t MemoryNeeded(int width, int height, int num_srcs) const override {
-    const uint64_t pixels = static_cast<uint64_t>(width) * height;
-    // Twice: the engine merges levels with a second map.
-    const uint64_t state =
-        2 * (sizeof(Plane) + sizeof(float) + sizeof(uint32_t));
-    return CpuViews::MemoryNeeded(width, height, num_srcs) + pixels * state;
+    return kEngineBytesPerPixel * width * height +
+           CpuViews::MemoryNeeded(width, height, num_srcs);
   }
 
   void SetViews(const ViewSet& views, const MethodParams& params) override {

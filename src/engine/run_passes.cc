@@ -146,8 +146,10 @@ void RunPasses(Backend* backend,
       PhaseTimer timer(times, PhaseName(pass.kind));
       backend->Run(pass, schedule.pattern, map, pass_control);
     }
-    if (stage.from_coarser && pass.kind == PassKind::kBasic)
+    if (stage.from_coarser && pass.kind == PassKind::kBasic) {
       MergeLevels(carried, searched, map);
+      carried = {};  // before priors are made
+    }
     if (pass.fit_planes) {
       PhaseTimer timer(times, "fit planes");
       FitLocalPlanes(views.ref.camera,

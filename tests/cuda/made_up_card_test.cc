@@ -151,6 +151,11 @@ TEST_F(MadeUpCardTest, WholeRunsGiveTheBytesOfTheScalarCpuBackend) {
   }
 }
 
+// The engine merges levels on the host, whoever matches.
+TEST_F(MadeUpCardTest, MemoryNeededCoversTwoMapsOnTheHost) {
+  EXPECT_GE(Make()->MemoryNeeded(1000, 1000, 1), 1000u * 1000u * 48u);
+}
+
 // What the card made itself need not come back to it for the filter; what the
 // host changed since must.
 TEST_F(MadeUpCardTest, OnlyMapsThatTheHostChangedAreSentAgain) {
