@@ -38,7 +38,7 @@ class ImageStore {
   virtual void StartStage(int level) = 0;
 
   // As many as there are requests; called by several threads at once. Throws
-  // UnreadableImage.
+  // UnreadableImage, and Error(kUsage) for images it knows nothing of.
   virtual std::vector<std::shared_ptr<const GrayImage>> Images(
       const std::vector<ImageRequest>& requests) = 0;
 };

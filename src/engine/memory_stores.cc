@@ -50,7 +50,13 @@ std::vector<std::shared_ptr<const GrayImage>> MemoryImageStore::Images(
   std::vector<std::shared_ptr<const GrayImage>> images;
   const std::lock_guard<std::mutex> lock(mutex_);
   for (const ImageRequest& request : requests) {
-    const auto& full = images_.at(request.image);
+    if (request.image < 0 ||
+        request.image >= static_cast<int>(images_.size())) {
+      throw Error(ErrorCode::kUsage,
+                  "image " + std::to_string(request.image) +
+                      ": there is no picture of it");
+    }
+    const auto& full = images_[request.image];
     const int level = level_ + request.more_levels;
     if (level == 0) {
       images.push_back(full);

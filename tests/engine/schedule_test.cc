@@ -174,6 +174,19 @@ TEST(Schedule, WithoutGeometricPassesFinerLevelsMatch) {
   EXPECT_EQ(schedule.stages[1].passes[0].num_iterations, 1);
 }
 
+// Else nothing would be there to be filtered.
+TEST_P(EveryMethod, TheLastStageMatches) {
+  ScheduleOptions options = Options(GetParam());
+  for (const int num_geom_passes : {0, 1}) {
+    options.num_geom_passes = num_geom_passes;
+    options.num_iterations = 0;
+    options.num_fine_iterations = 0;
+    options.num_fine_geom_passes = 0;
+    const Schedule schedule = MakeSchedule(options);
+    EXPECT_FALSE(schedule.stages.back().passes.empty());
+  }
+}
+
 TEST(Schedule, OnlyTheVeryLastPassIsStrongAndFitsPlanes) {
   const Schedule schedule = MakeSchedule(Options("hpm_plus"));
   for (const StageSpec& stage : schedule.stages) {
