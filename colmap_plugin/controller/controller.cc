@@ -200,7 +200,7 @@ RunSummary PatchMatchController::Run() {
     for (const StereoProblem& problem : problems) {
       // What is wrong was said when it was found.
       if (problem.is_reference && !CanBeComputed(workspace, problem))
-        statistics.AddFailure(workspace.ImageName(problem.ref_image));
+        statistics.AddFailure(workspace.ImageName(problem.ref_image), true);
     }
     FileMapStore maps(workspace,
                       problems,
@@ -233,7 +233,6 @@ RunSummary PatchMatchController::Run() {
       problems =
           ReadProblems(workspace, overview, problem_options, nullptr, stop);
       add_sources();
-      options_.hpm.overwrite = false;
       plan.Update();
     } catch (const Error& error) {
       if (error.code() == ErrorCode::kInterrupted) lock.ThrowIfLost();
@@ -300,7 +299,7 @@ RunEvents PatchMatchController::Events(
     // goes on without.
     const bool is_reference = problems[problem].is_reference;
     log_(is_reference ? LogLevel::kError : LogLevel::kWarning, error.what());
-    if (is_reference) statistics->AddFailure(name_of(problem));
+    statistics->AddFailure(name_of(problem), is_reference);
   };
   return events;
 }

@@ -82,10 +82,10 @@ StagePlan::StagePlan(const Workspace& workspace,
       cancel_(cancel),
       access_(access),
       stages_(MakeStages(schedule)) {
-  Update();
+  Plan(/*look_at_maps=*/!options.hpm.overwrite);
 }
 
-void StagePlan::Update() {
+void StagePlan::Plan(bool look_at_maps) {
   const std::vector<StereoProblem>& problems = problems_;
   const int num_stages = static_cast<int>(stages_.size());
   const int num_problems = static_cast<int>(problems.size());
@@ -145,7 +145,7 @@ void StagePlan::Update() {
       }
     }
     std::vector<Found> found(asked.size());
-    if (!options_.hpm.overwrite) {
+    if (look_at_maps) {
       tbb::parallel_for(size_t{0}, asked.size(), [&](size_t i) {
         found[i] = Look(s, asked[i], !wanted[asked[i]]);
       });

@@ -68,9 +68,9 @@ class StagePlan {
             const CancelToken& cancel,
             PlanAccess access = PlanAccess::kRun);
 
-  // Plans anew after the problems, of the same references, or the options
-  // changed.
-  void Update();
+  // Plans anew after the problems, of the same references, changed. What the
+  // run has made meanwhile stays, with --Hpm.overwrite, too.
+  void Update() { Plan(/*look_at_maps=*/true); }
 
   const std::vector<Stage>& stages() const { return stages_; }
   // Whether problem p has to be computed in stage s, and can be: its final
@@ -130,6 +130,7 @@ class StagePlan {
     MapState state = MapState::kMissing;
     std::vector<std::filesystem::path> damaged;
   };
+  void Plan(bool look_at_maps);
   Found Look(int s, int p, bool may_be_cut) const;
   // Whether the files are those the stamp vouches for; see the constructor.
   bool AreIntact(int s, int image, Stamp* stamp, Found* found) const;

@@ -410,6 +410,15 @@ TEST_F(StagePlanTest, MissingConsistencyGraphsAreMadeWhenAskedFor) {
   EXPECT_THAT(Needed(Plan(), 3), IsEmpty());
 }
 
+// The run has forgotten the maps of others by then.
+TEST_F(StagePlanTest, AnUpdateOfAnOverwritingPlanKeepsWhatTheRunMade) {
+  options_.hpm.overwrite = true;
+  StagePlan plan = Plan();
+  for (int s = 0; s < 4; ++s) Finish(plan, s, 2);
+  plan.Update();
+  EXPECT_THAT(Needed(plan, 3), ElementsAre(0, 1, 3, 4));
+}
+
 // Images 1 and 2 are there for the reference 0 alone: image 0 reads maps of 1
 // before its last stage, image 1 those of 2 before that.
 TEST_F(StagePlanTest, MapsOfSourcesAreMadeAsFarAsOthersReadThem) {
