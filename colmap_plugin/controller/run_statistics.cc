@@ -71,9 +71,9 @@ RunSummary RunStatistics::Summarize(
         summary.filter_losses[criterion] += share / num_maps;
     }
   }
-  if (pixels_ > 0) summary.ncc_evaluations_per_pixel = evaluations_ / pixels_;
+  if (pixels_ > 0) summary.cost_evaluations_per_pixel = evaluations_ / pixels_;
   summary.peak_memory_bytes = PeakMemoryBytes();
-  summary.cpu_target = backend;
+  summary.backend = backend;
   return summary;
 }
 
@@ -81,10 +81,10 @@ nlohmann::json RunStatistics::Record(const ControllerOptions& options,
                                      const RunSummary& summary) const {
   return {
       {"options", OptionRecord(options)},
-      {"backend", summary.cpu_target},
+      {"backend", summary.backend},
       {"seconds", summary.seconds},
       {"seconds_per_phase", seconds_},
-      {"ncc_evaluations_per_pixel", summary.ncc_evaluations_per_pixel},
+      {"cost_evaluations_per_pixel", summary.cost_evaluations_per_pixel},
       {"valid_pixel_share",
        summary.valid_pixel_share ? nlohmann::json(*summary.valid_pixel_share)
                                  : nlohmann::json()},

@@ -160,11 +160,6 @@ void StagePlan::Plan(bool look_at_maps) {
   replaces_foreign_maps_ = replaces_foreign_maps_ && found_foreign_maps_;
 }
 
-int StagePlan::CountNeeded(int s) const {
-  return static_cast<int>(
-      std::count(needed_[s].begin(), needed_[s].end(), true));
-}
-
 std::string StagePlan::CutFingerprintOf(int s, int p) const {
   Fingerprint hash;
   hash.AddString(fingerprints_[s][p])

@@ -45,7 +45,8 @@ struct HpmOptions {
   std::string method = kDefaultMethod;
   std::string quality = "high";  // see colmap_plugin/options/quality.h
   std::string device = "auto";   // auto, cpu or cuda
-  int gpu_images = -1;  // in flight per entry of gpu_index; -1: by memory
+  int gpu_images = -1;  // in flight per entry of gpu_index; -1: by threads,
+                        // then memory
   std::string cpu_target =
       "auto";  // auto, scalar, or a SIMD target of this machine
   // -1: the method's own.

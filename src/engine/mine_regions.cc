@@ -205,7 +205,8 @@ const Plane* NearestPlane(const RegionPlanes& planes,
 }  // namespace
 
 // Numbers from the share of true planes among the candidates of four rendered
-// scenes (docs/algorithm.md).
+// scenes; why this evidence counts: docs/algorithm.md, "A plane needs
+// evidence of its own".
 bool IsBelievable(const RegionPlane& plane, const PlaneEvidence& evidence) {
   constexpr double kDistinct = 0.01, kContradicted = -0.01;  // cost
   constexpr double kMinSpread = 0.05;
