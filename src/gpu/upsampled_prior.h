@@ -1,4 +1,4 @@
-// A prior of a coarser level, upsampled at a pixel when it is asked for.
+// A prior of a coarser level, upsampled at one pixel: the work of a lane.
 #pragma once
 
 #include "src/core/upsample_plane.h"
