@@ -34,7 +34,7 @@ class ImageStore {
  public:
   virtual ~ImageStore() = default;
 
-  // From now on images are halved `level` times.
+  // Between two stages: from now on images are halved `level` times.
   virtual void StartStage(int level) = 0;
 
   // As many as there are requests; called by several threads at once. Throws
