@@ -125,10 +125,10 @@ class CpuBackend : public Backend {
                 const Sweep& sweep,
                 const PixelState& state,
                 const RunControl& control) {
+    const SweepScope scope = {params, pattern, sweep, state, nullptr, nullptr};
     const auto visit = [&](auto kind, int col, int row) {
       const CpuPixelCost cost = CostAt(col, row);
-      VisitPixel<kind.value>(
-          params, pattern, nullptr, sweep, state, nullptr, cost, col, row);
+      VisitPixel<kind.value>(scope, cost, col, row);
       return cost.num_evaluations();
     };
     HalfSweep(state, sweep.color, control, [&](int col, int row) {
