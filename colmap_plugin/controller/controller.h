@@ -47,10 +47,7 @@ struct RunSummary {
   std::string backend;  // as Backend::Name() has it
 };
 
-class RunStatistics;
-class StagePlan;
 struct RunEvents;
-struct StereoProblem;
 
 class PatchMatchController {
  public:
@@ -67,13 +64,13 @@ class PatchMatchController {
   RunSummary Run();
 
  private:
+  struct RunState;
+  // False: an image proved unreadable, and the run is planned anew without it.
+  bool ComputeStages(const RunState& run) const;
   // What the log and the progress sink are told of a run. Keeps references to
-  // all arguments.
-  RunEvents Events(const Workspace& workspace,
-                   const std::vector<StereoProblem>& problems,
-                   const StagePlan& plan,
-                   const CancelToken& cancel,
-                   RunStatistics* statistics) const;
+  // all of it.
+  RunEvents Events(const RunState& run) const;
+  RunSummary Summarize(const RunState& run, double seconds) const;
 
   ControllerOptions options_;
   std::mutex mutex_;  // of warnings_
