@@ -56,9 +56,8 @@ struct HpmOptions {
   int num_fine_iterations = -1;  // the same at levels finer than the coarsest
   int num_fine_geom_passes = -1;
   int max_views = -1;  // source views that judge a pixel in a visit
-  double weak_gradient =
-      MethodParams().region_max_gradient;           // grey levels per pixel
-  double geom_weight = MethodParams().geom_weight;  // lambda of that term
+  double weak_gradient = MethodParams().weak_gradient;  // grey levels per pixel
+  double geom_weight = MethodParams().geom_weight;      // lambda of that term
   double geom_max_error = MethodParams().geom_max_error;  // pixels, its cap
   int num_levels = -1;  // of the hierarchy; -1: by method and image size
   double filter_min_agreement = MapFilter().min_agreement;

@@ -40,8 +40,8 @@ struct VisitParams {
   bool geometric;    // add the geometric term
   GeometricTerm geometric_term;
   PriorTerm prior_term;
-  int max_drawn_views;  // see KeepLargest()
-  int max_candidates;   // regions that a visit looks into
+  int max_views;       // see KeepLargest()
+  int max_candidates;  // regions that a visit looks into
   // Refinement without hypotheses from the whole depth range.
   bool search_near;
   bool ask_all_views;  // see ChooseViews()

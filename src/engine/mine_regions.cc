@@ -228,9 +228,9 @@ MinedRegions MineRegions(const ViewSet& views,
                          uint64_t key,
                          const ScorePlanes& score) {
   const std::vector<Witness> witnesses = WitnessesOf(views);
-  if (witnesses.empty() || !(params.region_max_gradient > 0)) return {};
+  if (witnesses.empty() || !(params.weak_gradient > 0)) return {};
   const WeakRegions regions = FindWeakRegions(
-      *views.ref.image, params.region_max_gradient, params.region_min_share);
+      *views.ref.image, params.weak_gradient, params.region_min_share);
   if (regions.num_regions == 0) return {};
   const int step = LatticeStep(map);
   const int needed =

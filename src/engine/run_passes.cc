@@ -58,8 +58,8 @@ void MergeLevels(const HypothesisMap& carried,
 std::vector<bool> ForgetTextured(const GrayImage& image,
                                  const MethodParams& params,
                                  HypothesisMap* map) {
-  const WeakRegions regions = FindWeakRegions(
-      image, params.region_max_gradient, params.region_min_share);
+  const WeakRegions regions =
+      FindWeakRegions(image, params.weak_gradient, params.region_min_share);
   std::vector<bool> textured(map->planes.size(), false);
   regions.ForEachBand([&](const Rows& rows) {
     const size_t end = static_cast<size_t>(rows.end) * regions.width;

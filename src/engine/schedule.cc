@@ -143,9 +143,9 @@ class StageList {
     pass.regions = regions;
     pass.search_near = departures.search_near;
     pass.max_candidates = departures.geom_candidates;
-    pass.max_drawn_views = departures.geom_views;
+    pass.max_views = departures.geom_views;
     pass.few_views = departures.geom_views < kMaxViews;
-    pass.half = departures.half_visits && !last_of_level;
+    pass.half_visits = departures.half_visits && !last_of_level;
     pass.fit_planes = departures.fit_planes && last_of_level && level == 0;
     stage.passes.push_back(pass);
     stages_->push_back(stage);

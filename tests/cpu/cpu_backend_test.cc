@@ -147,7 +147,7 @@ TEST_F(CpuBackendTest, AHalfPassVisitsOneColour) {
   backend->Run(pass, pattern_, &full, control_);
   const uint64_t num_of_full = backend->num_cost_evaluations() - num_costs;
   num_costs = backend->num_cost_evaluations();
-  pass.half = true;
+  pass.half_visits = true;
   backend->Run(pass, pattern_, &map, control_);
   EXPECT_LT(backend->num_cost_evaluations() - num_costs, 0.8 * num_of_full);
   const auto same_plane = [&](const Plane& a, const Plane& b) {

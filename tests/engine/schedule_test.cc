@@ -110,7 +110,7 @@ TEST_P(EveryMethod, OnlyOursDepartsFromThePaper) {
   EXPECT_EQ(DefaultParams(method).cut_color > 0, ours);
   EXPECT_EQ(DefaultParams(method).same_plane_bound > 0, ours);
   EXPECT_EQ(DefaultParams(method).worst_cost < kMaxCost, ours);
-  EXPECT_EQ(DefaultParams(method).max_drawn_views < kMaxViews, ours);
+  EXPECT_EQ(DefaultParams(method).max_views < kMaxViews, ours);
   for (const StageSpec& stage : MakeSchedule(Options(GetParam())).stages) {
     for (const Pass& pass : stage.passes) {
       EXPECT_EQ(pass.ask_all_views, !ours);
@@ -118,7 +118,7 @@ TEST_P(EveryMethod, OnlyOursDepartsFromThePaper) {
       EXPECT_EQ(pass.search_near, ours && stage.geometric);
       EXPECT_EQ(pass.few_views, ours && stage.geometric);
       EXPECT_EQ(pass.max_candidates < kNumRegions, ours && stage.geometric);
-      EXPECT_TRUE(ours || !(pass.half || pass.fit_planes));
+      EXPECT_TRUE(ours || !(pass.half_visits || pass.fit_planes));
     }
   }
 }
@@ -205,7 +205,7 @@ TEST(Schedule, OnlyTheLastGeometricPassOfALevelVisitsAllPixels) {
     if (!stage.geometric) continue;
     const bool last = s + 1 == schedule.stages.size() ||
                       schedule.stages[s + 1].level < stage.level;
-    EXPECT_EQ(stage.passes.back().half, !last) << s;
+    EXPECT_EQ(stage.passes.back().half_visits, !last) << s;
   }
 }
 
