@@ -54,9 +54,9 @@ class StagePlanTest : public testing::Test {
   }
 
   // The problems to compute in a stage.
-  static std::vector<int> Needed(const StagePlan& plan, int stage) {
+  std::vector<int> Needed(const StagePlan& plan, int stage) const {
     std::vector<int> needed;
-    for (int p = 0; p < 5; ++p) {
+    for (int p = 0; p < static_cast<int>(problems_.size()); ++p) {
       if (plan.IsNeeded(stage, p)) needed.push_back(p);
     }
     return needed;
