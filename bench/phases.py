@@ -80,7 +80,7 @@ def main():
         record, cpu = run(args.hpm_mvs, args.scene, threads, options)
         phases = record["seconds_per_phase"]
         wall = record["seconds"]
-        costs = record["ncc_evaluations_per_pixel"]
+        costs = record["cost_evaluations_per_pixel"]
         walls.append((threads, wall))
         results["runs"][threads] = {
             "backend": record["backend"], "wall_seconds": wall, "cpu_seconds": cpu,

@@ -106,7 +106,7 @@ def score(build, scene, method, seed, options, keep):
         record = json.loads((folder / "stereo/hpm_mvs/run.json").read_text())
         result = {
             "scene": scene.name, "method": method, "seed": seed, "cpu_seconds": cpu_seconds,
-            "costs_per_pixel": record["ncc_evaluations_per_pixel"],
+            "costs_per_pixel": record["cost_evaluations_per_pixel"],
             "thresholds": settings.thresholds, "finest_share": settings.finest_share,
         }
         run([build / "bench/eval_depth", folder, "--json", folder / "depth.json"], log)

@@ -137,9 +137,7 @@ class CudaBackendImpl : public CudaBackend {
   }
 
   uint64_t MemoryNeeded(int width, int height, int) const override {
-    return static_cast<uint64_t>(width) * height *
-               (2 * sizeof(Plane) + 2 * sizeof(uint32_t)) +
-           Uploader::kBytes;
+    return kEngineBytesPerPixel * width * height + Uploader::kBytes;
   }
 
   bool UpsamplesPriors() const override { return true; }

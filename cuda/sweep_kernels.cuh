@@ -57,12 +57,12 @@ __global__ void __launch_bounds__(kWarpsPerBlock* kWarpSize,
     const Window window = WindowAt(
         problem, &windows[threadIdx.x / kWarpSize], pixel.col, pixel.row);
     const LaneCost<Sampler> cost(problem, window, pixel.col, pixel.row);
-    VisitPixel<kKind>(problem.params,
-                      problem.pattern,
-                      problem.src_centers,
-                      sweep,
-                      state,
-                      consistent,
+    VisitPixel<kKind>({problem.params,
+                       problem.pattern,
+                       sweep,
+                       state,
+                       problem.src_centers,
+                       consistent},
                       cost,
                       pixel.col,
                       pixel.row);

@@ -133,6 +133,17 @@ int CountFinalMaps(const Workspace& workspace, const StagePlan& plan) {
   return count;
 }
 
+// What geometric stages need maps of beside the references.
+void AddSources(const Workspace& workspace,
+                const ModelOverview& overview,
+                const ControllerOptions& options,
+                const LogSink& log,
+                const CancelToken& stop,
+                std::vector<StereoProblem>* problems) {
+  if (!options.patch_match.geom_consistency) return;
+  AddSourceProblems(workspace, overview, options.problems, log, stop, problems);
+}
+
 }  // namespace
 
 PatchMatchController::PatchMatchController(const ControllerOptions& options,
@@ -150,6 +161,20 @@ PatchMatchController::PatchMatchController(const ControllerOptions& options,
       }),
       progress_(std::move(progress)),
       cancel_(cancel) {}
+
+// A run on its way, for its steps.
+struct PatchMatchController::RunState {
+  Workspace& workspace;
+  const ModelOverview& overview;
+  const CancelToken& stop;
+  const RunLock& lock;
+  const Schedule& schedule;
+  const RunResources& resources;
+  std::vector<StereoProblem>& problems;
+  StagePlan& plan;
+  RunStatistics& statistics;
+  const double planning_seconds;
+};
 
 RunSummary PatchMatchController::Run() {
   const auto seconds = [start = std::chrono::steady_clock::now()]() -> double {
@@ -171,22 +196,14 @@ RunSummary PatchMatchController::Run() {
   workspace.StretchDeepImages(FindDeepRange(workspace, &contents, log_, stop));
 
   log_(LogLevel::kInfo, "Reading configuration...");
-  const ProblemOptions& problem_options = options_.problems;
-  const ModelOverview overview(workspace, problem_options, stop);
+  const ModelOverview overview(workspace, options_.problems, stop);
   std::vector<StereoProblem> problems =
-      ReadProblems(workspace, overview, problem_options, log_, stop);
-  const size_t num_references = problems.size();
+      ReadProblems(workspace, overview, options_.problems, log_, stop);
   log_(LogLevel::kInfo,
-       fmt::format("Configuration has {} problems...", num_references));
+       fmt::format("Configuration has {} problems...", problems.size()));
   WarnOfFarOrigin(workspace, problems, log_);
+  AddSources(workspace, overview, options_, log_, stop, &problems);
 
-  const bool geometric = options_.patch_match.geom_consistency;
-  const auto add_sources = [&] {
-    if (!geometric) return;
-    AddSourceProblems(
-        workspace, overview, problem_options, log_, stop, &problems);
-  };
-  add_sources();
   SetLevels(workspace, &options_);
   const Schedule schedule = MakeSchedule(MakeScheduleOptions(options_));
   StagePlan plan(workspace, problems, schedule, options_, &contents, stop);
@@ -194,55 +211,23 @@ RunSummary PatchMatchController::Run() {
   AnnouncePlan(problems, plan, options_, log_);
   const RunResources resources = OpenResources(
       workspace, problems, options_, target, threads.num_threads(), log_);
-  RunStatistics statistics;
   if (options_.hpm.overwrite) {
     lock.ThrowIfLost();
     ForgetMaps(workspace, problems, plan);
   }
-  const double planning_seconds = seconds();
-  for (bool is_done = false; !is_done;) {
-    for (const StereoProblem& problem : problems) {
-      // What is wrong was said when it was found.
-      if (problem.is_reference && !CanBeComputed(workspace, problem))
-        statistics.AddFailure(workspace.ImageName(problem.ref_image));
-    }
-    FileMapStore maps(workspace,
-                      problems,
-                      options_,
-                      plan,
-                      lock,
-                      resources.inputs.get(),
-                      &statistics,
-                      log_);
-    const RunSpec spec = {
-        schedule,
-        MakeMethodParams(options_),
-        MakeMapFilter(options_),
-        EngineProblems(workspace, problems, options_.random_seed)};
-    try {
-      RunSchedule(spec,
-                  resources.inputs.get(),
-                  &maps,
-                  resources.workers.get(),
-                  Events(workspace, problems, plan, stop, &statistics));
-      is_done = true;
-    } catch (const UnreadableImage& error) {
-      // Planned anew without it, so that all maps are those of a run that knew
-      // it from the start; what is made already and does not need it stays.
-      lock.ThrowIfLost();
-      log_(LogLevel::kWarning, error.what());
-      workspace.DropPicture(error.image());
-      // The references are the same: those that cannot be computed stay as
-      // problems.
-      problems =
-          ReadProblems(workspace, overview, problem_options, nullptr, stop);
-      add_sources();
-      options_.hpm.overwrite = false;
-      plan.Update();
-    } catch (const Error& error) {
-      if (error.code() == ErrorCode::kInterrupted) lock.ThrowIfLost();
-      throw;
-    }
+
+  RunStatistics statistics;
+  const RunState run = {workspace,
+                        overview,
+                        stop,
+                        lock,
+                        schedule,
+                        resources,
+                        problems,
+                        plan,
+                        statistics,
+                        seconds()};
+  while (!ComputeStages(run)) {
   }
   lock.ThrowIfLost();
   WarnOfChangedImages(workspace, problems, contents, log_);
@@ -250,59 +235,107 @@ RunSummary PatchMatchController::Run() {
   if (!statistics.AnyFailed())
     CutInputMaps(workspace, problems, plan, lock, stop);
   RemoveInnerMaps(workspace);
+  return Summarize(run, seconds());
+}
 
-  std::vector<std::string> names;
-  for (size_t p = 0; p < num_references; ++p)
-    names.push_back(workspace.ImageName(problems[p].ref_image));
+bool PatchMatchController::ComputeStages(const RunState& run) const {
+  for (const StereoProblem& problem : run.problems) {
+    // What is wrong was said when it was found.
+    if (problem.is_reference && !CanBeComputed(run.workspace, problem))
+      run.statistics.AddFailure(run.workspace.ImageName(problem.ref_image),
+                                true);
+  }
+  FileMapStore maps(run.workspace,
+                    run.problems,
+                    options_,
+                    run.plan,
+                    run.lock,
+                    run.resources.inputs.get(),
+                    &run.statistics,
+                    log_);
+  const RunSpec spec = {
+      run.schedule,
+      MakeMethodParams(options_),
+      MakeMapFilter(options_),
+      EngineProblems(run.workspace, run.problems, options_.random_seed)};
+  try {
+    RunSchedule(spec,
+                run.resources.inputs.get(),
+                &maps,
+                run.resources.workers.get(),
+                Events(run));
+    return true;
+  } catch (const UnreadableImage& error) {
+    // Planned anew without it, so that all maps are those of a run that knew
+    // it from the start; what is made already and does not need it stays.
+    run.lock.ThrowIfLost();
+    log_(LogLevel::kWarning, error.what());
+    run.workspace.DropPicture(error.image());
+    // The references are the same: those that cannot be computed stay as
+    // problems.
+    run.problems = ReadProblems(
+        run.workspace, run.overview, options_.problems, nullptr, run.stop);
+    AddSources(
+        run.workspace, run.overview, options_, log_, run.stop, &run.problems);
+    run.plan.Update();
+    return false;
+  } catch (const Error& error) {
+    if (error.code() == ErrorCode::kInterrupted) run.lock.ThrowIfLost();
+    throw;
+  }
+}
+
+RunSummary PatchMatchController::Summarize(const RunState& run,
+                                           double seconds) const {
   for (const std::string& line :
-       FilterWarnings(statistics.losses(), options_)) {
+       FilterWarnings(run.statistics.losses(), options_)) {
     log_(LogLevel::kWarning, line);
   }
+  std::vector<std::string> names;
+  for (const StereoProblem& problem : run.problems) {
+    if (problem.is_reference)
+      names.push_back(run.workspace.ImageName(problem.ref_image));
+  }
   RunSummary summary =
-      statistics.Summarize(names, resources.backend_name, seconds());
-  summary.planning_seconds = planning_seconds;
+      run.statistics.Summarize(names, run.resources.backend_name, seconds);
+  summary.planning_seconds = run.planning_seconds;
   summary.warnings = warnings_;
-  summary.num_fusable = CountFinalMaps(workspace, plan);
-  if (statistics.AnyComputed() || statistics.AnyFailed()) {
-    WriteRunRecord(workspace.StatePath(), statistics.Record(options_, summary));
+  summary.num_fusable = CountFinalMaps(run.workspace, run.plan);
+  if (run.statistics.AnyComputed() || run.statistics.AnyFailed()) {
+    WriteRunRecord(run.workspace.StatePath(),
+                   run.statistics.Record(options_, summary));
   }
   return summary;
 }
 
-RunEvents PatchMatchController::Events(
-    const Workspace& workspace,
-    const std::vector<StereoProblem>& problems,
-    const StagePlan& plan,
-    const CancelToken& cancel,
-    RunStatistics* statistics) const {
+RunEvents PatchMatchController::Events(const RunState& run) const {
   const auto name_of = [&](int problem) -> const std::string& {
-    return workspace.ImageName(problems[problem].ref_image);
+    return run.workspace.ImageName(run.problems[problem].ref_image);
   };
   RunEvents events;
-  events.cancel = &cancel;
+  events.cancel = &run.stop;
   events.started = [&, name_of](const RunProgress& at) {
     log_(LogLevel::kInfo,
          fmt::format("Processing view {} / {} for {} ({})",
                      at.number,
                      at.num_problems,
                      name_of(at.problem),
-                     plan.stages()[at.stage].title));
+                     run.plan.stages()[at.stage].title));
   };
   events.progress = [&, name_of](const RunProgress& at) {
-    progress_({plan.stages()[at.stage].name,
+    progress_({run.plan.stages()[at.stage].name,
                at.problem < 0 ? "" : name_of(at.problem),
                at.number,
                at.num_problems,
                at.fraction,
-               plan.stages()[at.stage].title});
+               run.plan.stages()[at.stage].title});
   };
-  events.failed = [&, name_of, statistics](
-                      int, int problem, const Error& error) {
+  events.failed = [&, name_of](int, int problem, const Error& error) {
     // Images that are only sources fail by themselves: whoever reads their maps
     // goes on without.
-    const bool is_reference = problems[problem].is_reference;
+    const bool is_reference = run.problems[problem].is_reference;
     log_(is_reference ? LogLevel::kError : LogLevel::kWarning, error.what());
-    if (is_reference) statistics->AddFailure(name_of(problem));
+    run.statistics.AddFailure(name_of(problem), is_reference);
   };
   return events;
 }

@@ -1,6 +1,5 @@
-// Runs patch match stereo over a workspace: a photometric stage over all
-// reference images, then the geometric passes, each a barrier. Resumes, locks,
-// publishes maps atomically, stops cleanly when cancelled.
+// Runs patch match stereo over a workspace, stage by stage (schedule.h).
+// Resumes, locks, publishes maps atomically, stops cleanly when cancelled.
 #pragma once
 
 #include "colmap_plugin/controller/filter_criterion.h"
@@ -45,15 +44,12 @@ struct RunSummary {
   FilterLosses filter_losses;  // the same, of what has no depth
   // Images of the workspace with final maps: what fusion will find.
   int num_fusable = 0;
-  double ncc_evaluations_per_pixel = 0;
+  double cost_evaluations_per_pixel = 0;
   uint64_t peak_memory_bytes = 0;
-  std::string cpu_target;
+  std::string backend;  // as Backend::Name() has it
 };
 
-class RunStatistics;
-class StagePlan;
 struct RunEvents;
-struct StereoProblem;
 
 class PatchMatchController {
  public:
@@ -70,13 +66,13 @@ class PatchMatchController {
   RunSummary Run();
 
  private:
+  struct RunState;
+  // False: an image proved unreadable, and the run is planned anew without it.
+  bool ComputeStages(const RunState& run) const;
   // What the log and the progress sink are told of a run. Keeps references to
-  // all arguments.
-  RunEvents Events(const Workspace& workspace,
-                   const std::vector<StereoProblem>& problems,
-                   const StagePlan& plan,
-                   const CancelToken& cancel,
-                   RunStatistics* statistics) const;
+  // all of it.
+  RunEvents Events(const RunState& run) const;
+  RunSummary Summarize(const RunState& run, double seconds) const;
 
   ControllerOptions options_;
   std::mutex mutex_;  // of warnings_

@@ -16,7 +16,8 @@ namespace hpm {
 class FileMapStore : public MapStore {
  public:
   // Keeps references to all arguments. What it writes is counted in
-  // *statistics; images that have failed there are not tried again.
+  // *statistics; images that have failed there, references or not, are not
+  // tried again.
   FileMapStore(const Workspace& workspace,
                const std::vector<StereoProblem>& problems,
                const ControllerOptions& options,

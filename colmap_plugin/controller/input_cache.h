@@ -3,9 +3,9 @@
 // another is reading already.
 #pragma once
 
+#include "colmap_plugin/controller/lru_cache.h"
 #include "colmap_plugin/controller/stages.h"
 #include "src/engine/image_store.h"
-#include "src/engine/lru_cache.h"
 #include "src/image/gray_image.h"
 #include "src/image/inverse_depth_map.h"
 

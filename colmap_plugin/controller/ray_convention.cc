@@ -39,8 +39,8 @@ class MapPair {
     CheckSize(normal_, 3);
   }
 
-  // visit(col, row, plane, z) for every pixel, by several threads; z is that of
-  // the plane at the pixel's centre, the distance 0 where there is no depth.
+  // visit(col, row, plane) for every pixel, by several threads; the distance is
+  // 0 where there is no depth.
   template <class Visit>
   void ForEachPlane(const Visit& visit) const {
     const int width = camera_.width;
@@ -63,7 +63,7 @@ class MapPair {
               camera_, plane, static_cast<float>(col), static_cast<float>(row));
           if (!(at[0] > 0 && std::isfinite(z) && z > 0 && plane.distance > 0))
             plane = {{0, 0, 0}, 0};
-          visit(col, row, plane, z);
+          visit(col, row, plane);
         }
       }
     });
@@ -149,7 +149,7 @@ void ReadPlanes(const std::filesystem::path& depth_path,
                 std::vector<Plane>* planes) {
   const MapPair maps(depth_path, normal_path, camera);
   planes->resize(static_cast<size_t>(camera.width) * camera.height);
-  maps.ForEachPlane([&](int col, int row, const Plane& plane, float) {
+  maps.ForEachPlane([&](int col, int row, const Plane& plane) {
     (*planes)[static_cast<size_t>(row) * camera.width + col] = plane;
   });
 }
@@ -164,21 +164,15 @@ InverseDepthMap ReadInverseDepths(const std::filesystem::path& depth_path,
   const size_t size = static_cast<size_t>(coarse.width) * coarse.height;
   // Not filled here: each pixel has one in its middle.
   const std::unique_ptr<float[]> inverse(new float[size]);
-  maps.ForEachPlane([&](int col, int row, const Plane& plane, float z) {
+  maps.ForEachPlane([&](int col, int row, const Plane& plane) {
     const int block_row = middle.BlockOf(row);
     const int block_col = middle.BlockOf(col);
     if (row != middle.Of(block_row, camera.height) ||
         col != middle.Of(block_col, camera.width)) {
       return;
     }
-    if (more_levels > 0) {
-      z = DepthAt(camera,
-                  plane,
-                  middle.CenterOf(block_col),
-                  middle.CenterOf(block_row));
-    }
     inverse[static_cast<size_t>(block_row) * coarse.width + block_col] =
-        plane.distance > 0 && std::isfinite(z) && z > 0 ? 1 / z : 0;
+        InverseDepthOfBlock(camera, plane, middle, block_col, block_row);
   });
   return InverseDepthMap::Of(inverse.get(), size);
 }

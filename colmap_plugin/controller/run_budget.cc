@@ -61,7 +61,7 @@ int ThreadsToDecode(uint64_t largest_bytes) {
 
 MemoryNeeds LargestNeeds(const Workspace& workspace,
                          const std::vector<StereoProblem>& problems,
-                         const Backend& backend,
+                         const std::vector<const Backend*>& backends,
                          bool geometric) {
   const auto pixels_of = [&](int image) {
     const Camera& camera = workspace.camera(image);
@@ -79,12 +79,12 @@ MemoryNeeds LargestNeeds(const Workspace& workspace,
     }
     // For previews, consistency graphs and cuts to a range.
     const uint64_t maps_read_back = ref_pixels * 4 * sizeof(float);
-    const uint64_t working =
-        backend.MemoryNeeded(ref.width,
-                             ref.height,
-                             static_cast<int>(problem.src_images.size())) +
-        maps_read_back + decoded;
-    needs.working = std::max(needs.working, working);
+    for (const Backend* backend : backends) {
+      const uint64_t matching = backend->MemoryNeeded(
+          ref.width, ref.height, static_cast<int>(problem.src_images.size()));
+      needs.working =
+          std::max(needs.working, matching + maps_read_back + decoded);
+    }
     needs.inputs = std::max(needs.inputs, inputs);
     needs.decoding = std::max(needs.decoding, decoded);
   }
@@ -111,9 +111,11 @@ ProblemSize LargestProblem(const Workspace& workspace,
 }
 
 int ImagesInMemory(const MemoryNeeds& needs, int most, uint64_t limit) {
-  int count = std::max(most, 1);
-  while (count > 1 && needs.inputs + count * needs.working > limit / 2) --count;
-  return count;
+  const uint64_t bytes =
+      std::min(limit / 2, limit - std::min(limit, kOverheadBytes));
+  const uint64_t fit =
+      bytes / std::max<uint64_t>(needs.working + needs.inputs, 1);
+  return static_cast<int>(std::clamp<uint64_t>(fit, 1, std::max(most, 1)));
 }
 
 int DecodesAtOnce(const MemoryNeeds& needs) {

@@ -26,9 +26,10 @@ uint64_t DecodedBytes(const Workspace& workspace, int image);
 // while nothing else is in memory.
 int ThreadsToDecode(uint64_t largest_bytes);
 
+// Whichever of `backends` computes.
 MemoryNeeds LargestNeeds(const Workspace& workspace,
                          const std::vector<StereoProblem>& problems,
-                         const Backend& backend,
+                         const std::vector<const Backend*>& backends,
                          bool geometric);
 
 // The largest of all sizes, for memory on a GPU.
@@ -36,8 +37,8 @@ ProblemSize LargestProblem(const Workspace& workspace,
                            const std::vector<StereoProblem>& problems,
                            bool geometric);
 
-// How many of `most` images may be worked on at once within `limit` bytes; at
-// least 1.
+// How many of `most` images may be worked on at once in half of `limit` bytes;
+// at least 1. PlanCacheBytes() refuses no more than one.
 int ImagesInMemory(const MemoryNeeds& needs, int most, uint64_t limit);
 
 // How many files an image in flight may decode at once: while it reads, what it

@@ -28,10 +28,13 @@ RunResources OpenResources(const Workspace& workspace,
                num_threads,
                RealGpus(),
                log);
-  const Backend& first = gpus.empty() ? *cpus.front() : *gpus.front();
+  const bool may_fall_back = options.hpm.device != "cuda";
+  std::vector<const Backend*> backends;
+  if (!gpus.empty()) backends.push_back(gpus.front().get());
+  if (gpus.empty() || may_fall_back) backends.push_back(cpus.front().get());
   RunResources resources;
-  resources.backend_name = first.Name();
-  MemoryNeeds needs = LargestNeeds(workspace, problems, first, geometric);
+  resources.backend_name = backends.front()->Name();
+  MemoryNeeds needs = LargestNeeds(workspace, problems, backends, geometric);
   if (gpus.size() > 1) {
     gpus.resize(
         ImagesInMemory(needs, static_cast<int>(gpus.size()), MemoryLimit()));
@@ -59,7 +62,7 @@ RunResources OpenResources(const Workspace& workspace,
                   options.hpm.method,
                   (needs.working + needs.inputs) >> 20));
   resources.workers = std::make_unique<WorkerPool>(
-      std::move(cpus), std::move(gpus), options.hpm.device != "cuda", log);
+      std::move(cpus), std::move(gpus), may_fall_back, log);
   return resources;
 }
 

@@ -31,8 +31,7 @@ bool RunStatistics::Add(const std::string& image,
     pixels_ += size * static_cast<double>(1 << (2 * stage.spec.level));
   }
   if (stage.is_final) {
-    valid_share_sum_ += result.valid_pixel_share;
-    ++num_final_maps_;
+    valid_shares_[image] = result.valid_pixel_share;
     losses_[image] = result.losses;
   }
   for (const auto& [phase, time] : result.seconds) seconds_[phase] += time;
@@ -40,14 +39,14 @@ bool RunStatistics::Add(const std::string& image,
   return is_first;
 }
 
-void RunStatistics::AddFailure(const std::string& image) {
+void RunStatistics::AddFailure(const std::string& image, bool is_reference) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  failed_.insert(image);
+  (is_reference ? failed_ : failed_sources_).insert(image);
 }
 
 bool RunStatistics::HasFailed(const std::string& image) const {
   const std::lock_guard<std::mutex> lock(mutex_);
-  return failed_.count(image) > 0;
+  return failed_.count(image) + failed_sources_.count(image) > 0;
 }
 
 RunSummary RunStatistics::Summarize(
@@ -62,16 +61,19 @@ RunSummary RunStatistics::Summarize(
   }
   summary.failed.assign(failed_.begin(), failed_.end());
   summary.seconds = seconds;
-  if (num_final_maps_ > 0) {
-    summary.valid_pixel_share = valid_share_sum_ / num_final_maps_;
+  if (!valid_shares_.empty()) {
+    const auto num_maps = static_cast<double>(valid_shares_.size());
+    double sum = 0;
+    for (const auto& [image, share] : valid_shares_) sum += share;
+    summary.valid_pixel_share = sum / num_maps;
     for (const auto& [image, losses] : losses_) {
       for (const auto& [criterion, share] : losses)
-        summary.filter_losses[criterion] += share / num_final_maps_;
+        summary.filter_losses[criterion] += share / num_maps;
     }
   }
-  if (pixels_ > 0) summary.ncc_evaluations_per_pixel = evaluations_ / pixels_;
+  if (pixels_ > 0) summary.cost_evaluations_per_pixel = evaluations_ / pixels_;
   summary.peak_memory_bytes = PeakMemoryBytes();
-  summary.cpu_target = backend;
+  summary.backend = backend;
   return summary;
 }
 
@@ -79,10 +81,10 @@ nlohmann::json RunStatistics::Record(const ControllerOptions& options,
                                      const RunSummary& summary) const {
   return {
       {"options", OptionRecord(options)},
-      {"backend", summary.cpu_target},
+      {"backend", summary.backend},
       {"seconds", summary.seconds},
       {"seconds_per_phase", seconds_},
-      {"ncc_evaluations_per_pixel", summary.ncc_evaluations_per_pixel},
+      {"cost_evaluations_per_pixel", summary.cost_evaluations_per_pixel},
       {"valid_pixel_share",
        summary.valid_pixel_share ? nlohmann::json(*summary.valid_pixel_share)
                                  : nlohmann::json()},

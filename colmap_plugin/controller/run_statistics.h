@@ -31,14 +31,17 @@ nlohmann::json ToJson(const StageResult& result);
 class RunStatistics {
  public:
   // stage_name: as in StagePlan::NameOf(). Images that are only sources count
-  // for the work, not for the images. Returns whether it is the first result.
+  // for the work, not for the images. A map that is made again, after the run
+  // was planned anew, takes the place of the one before. Returns whether it is
+  // the first result.
   bool Add(const std::string& image,
            bool is_reference,
            const Stage& stage,
            const std::string& stage_name,
            const Camera& camera,
            const StageResult& result);
-  void AddFailure(const std::string& image);
+  // Only references count as failed images; of the others it is known.
+  void AddFailure(const std::string& image, bool is_reference);
   bool HasFailed(const std::string& image) const;
   bool AnyFailed() const { return !failed_.empty(); }
   bool AnyComputed() const { return !computed_.empty(); }
@@ -59,12 +62,12 @@ class RunStatistics {
   nlohmann::json images_;
   std::set<std::string> computed_;
   std::set<std::string> worked_on_;  // these and sources
-  std::set<std::string> failed_;
+  std::set<std::string> failed_, failed_sources_;
   PhaseTimes seconds_;
-  double evaluations_ = 0;      // matching costs, all images and stages
-  double pixels_ = 0;           // of all images computed, at full resolution
-  double valid_share_sum_ = 0;  // over final maps
-  int num_final_maps_ = 0;
+  double evaluations_ = 0;  // matching costs, all images and stages
+  double pixels_ = 0;       // of all images computed, at full resolution
+  // By image, of final maps.
+  std::map<std::string, double> valid_shares_;
   std::map<std::string, FilterLosses> losses_;
 };
 

@@ -1,8 +1,10 @@
 #include "colmap_plugin/controller/stage_fingerprint.h"
 
 #include "colmap_plugin/options/option_fingerprint.h"
-#include "colmap_plugin/workspace/fingerprint.h"
 #include "colmap_plugin/workspace/source_level.h"
+
+#include <cstdint>
+#include <type_traits>
 
 namespace hpm {
 namespace {
@@ -33,15 +35,29 @@ void AddImage(const Workspace& workspace,
     hash->AddString("decoded at").AddInt(decoding.reduction);
 }
 
-// The numbers of the method's row. A new member breaks the line: then it is
-// added here, and no map is taken for one made with another number.
-void AddMethod(const MethodParams& params, Fingerprint* hash) {
+template <class... Values>
+void AddAll(Fingerprint* hash, const Values&... values) {
+  const auto add = [hash](auto value) {
+    if constexpr (std::is_floating_point_v<decltype(value)>) {
+      hash->AddDouble(value);
+    } else {
+      hash->AddInt(static_cast<int64_t>(value));
+    }
+  };
+  (add(values), ...);
+}
+
+}  // namespace
+
+// A new member breaks the line: then it is added to both lists, here and in the
+// test, and no map is taken for one made with another number.
+void AddToFingerprint(const MethodParams& params, Fingerprint* hash) {
   const auto& [patch_radius,
                sigma_spatial,
                sigma_color,
                cut_color,
                num_view_draws,
-               max_drawn_views,
+               max_views,
                depth_perturbation,
                normal_perturbation,
                same_plane_bound,
@@ -52,40 +68,38 @@ void AddMethod(const MethodParams& params, Fingerprint* hash) {
                prior_beta,
                prior_depth_share,
                prior_angle,
-               region_max_gradient,
+               weak_gradient,
                region_min_share,
                region_max_error,
                region_max_residual,
                region_min_consistent,
                region_gamma] = params;
-  hash->AddInt(patch_radius)
-      .AddInt(num_view_draws)
-      .AddInt(max_drawn_views)
-      .AddInt(region_min_consistent);
-  for (const float v : {sigma_spatial,
-                        sigma_color,
-                        cut_color,
-                        depth_perturbation,
-                        normal_perturbation,
-                        same_plane_bound,
-                        worst_cost,
-                        geom_weight,
-                        geom_max_error,
-                        prior_gamma,
-                        prior_beta,
-                        prior_depth_share,
-                        prior_angle,
-                        region_max_gradient,
-                        region_min_share,
-                        region_max_error,
-                        region_max_residual,
-                        region_gamma}) {
-    hash->AddDouble(v);
-  }
+  AddAll(hash,
+         patch_radius,
+         sigma_spatial,
+         sigma_color,
+         cut_color,
+         num_view_draws,
+         max_views,
+         depth_perturbation,
+         normal_perturbation,
+         same_plane_bound,
+         worst_cost,
+         geom_weight,
+         geom_max_error,
+         prior_gamma,
+         prior_beta,
+         prior_depth_share,
+         prior_angle,
+         weak_gradient,
+         region_min_share,
+         region_max_error,
+         region_max_residual,
+         region_min_consistent,
+         region_gamma);
 }
 
-// A new member breaks the line, as above.
-void AddPass(const Pass& pass, Fingerprint* hash) {
+void AddToFingerprint(const Pass& pass, Fingerprint* hash) {
   const auto& [kind,
                start,
                num_iterations,
@@ -96,22 +110,26 @@ void AddPass(const Pass& pass, Fingerprint* hash) {
                ask_all_views,
                search_near,
                max_candidates,
-               max_drawn_views,
+               max_views,
                few_views,
-               half,
+               half_visits,
                fit_planes] = pass;
-  hash->AddInt(static_cast<int>(kind))
-      .AddInt(static_cast<int>(start))
-      .AddInt(static_cast<int>(regions));
-  for (const int v :
-       {num_iterations, id, level, max_candidates, max_drawn_views})
-    hash->AddInt(v);
-  for (const bool v :
-       {median, ask_all_views, search_near, few_views, half, fit_planes})
-    hash->AddInt(v);
+  AddAll(hash,
+         kind,
+         start,
+         num_iterations,
+         id,
+         level,
+         median,
+         regions,
+         ask_all_views,
+         search_near,
+         max_candidates,
+         max_views,
+         few_views,
+         half_visits,
+         fit_planes);
 }
-
-}  // namespace
 
 std::string FingerprintOfStage(const std::string& name,
                                const StageSpec& stage,
@@ -120,8 +138,8 @@ std::string FingerprintOfStage(const std::string& name,
   Fingerprint hash;
   hash.AddInt(kAlgorithmVersion).AddString(name);
   hash.AddInt(stage.from_coarser).AddInt(is_final);
-  AddMethod(DefaultParams(FindMethod(options.hpm.method)), &hash);
-  for (const Pass& pass : stage.passes) AddPass(pass, &hash);
+  AddToFingerprint(DefaultParams(FindMethod(options.hpm.method)), &hash);
+  for (const Pass& pass : stage.passes) AddToFingerprint(pass, &hash);
   AddOptions(options, stage, is_final, &hash);
   return hash.Hex();
 }

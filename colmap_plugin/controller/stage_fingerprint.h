@@ -4,12 +4,17 @@
 
 #include "colmap_plugin/controller/image_contents.h"
 #include "colmap_plugin/options/options.h"
+#include "colmap_plugin/workspace/fingerprint.h"
 #include "colmap_plugin/workspace/problem.h"
 #include "src/engine/schedule.h"
 
 #include <string>
 
 namespace hpm {
+
+// Every member counts: the numbers of the method's row, and those of a pass.
+void AddToFingerprint(const MethodParams& params, Fingerprint* hash);
+void AddToFingerprint(const Pass& pass, Fingerprint* hash);
 
 // What is the same for all problems: the options that concern the stage, and
 // its passes. is_final: its maps are the result of the run.

@@ -99,10 +99,10 @@ StagePlan::StagePlan(const Workspace& workspace,
       cancel_(cancel),
       access_(access),
       stages_(MakeStages(schedule, options.hpm.keep_photometric)) {
-  Update();
+  Plan(/*look_at_maps=*/!options.hpm.overwrite);
 }
 
-void StagePlan::Update() {
+void StagePlan::Plan(bool look_at_maps) {
   const std::vector<StereoProblem>& problems = problems_;
   const int num_stages = static_cast<int>(stages_.size());
   const int num_problems = static_cast<int>(problems.size());
@@ -162,7 +162,7 @@ void StagePlan::Update() {
       }
     }
     std::vector<Found> found(asked.size());
-    if (!options_.hpm.overwrite) {
+    if (look_at_maps) {
       tbb::parallel_for(size_t{0}, asked.size(), [&](size_t i) {
         found[i] = Look(s, asked[i], !wanted[asked[i]]);
       });
@@ -175,11 +175,6 @@ void StagePlan::Update() {
     }
   }
   replaces_foreign_maps_ = replaces_foreign_maps_ && found_foreign_maps_;
-}
-
-int StagePlan::CountNeeded(int s) const {
-  return static_cast<int>(
-      std::count(needed_[s].begin(), needed_[s].end(), true));
 }
 
 std::string StagePlan::CutFingerprintOf(int s, int p) const {

@@ -1,7 +1,7 @@
-// The stages of a run and what is left to do in each: photometric, then one per
-// geometric pass. A stage of an image is finished when its maps are complete
-// and its stamp carries the fingerprint of everything the maps depend on, the
-// contents of the images among it, and vouches for the maps.
+// The stages of a run (schedule.h) and what is left to do in each. A stage of
+// an image is finished when its maps are complete and its stamp carries the
+// fingerprint of everything the maps depend on, the contents of the images
+// among it, and vouches for the maps.
 #pragma once
 
 #include "colmap_plugin/controller/image_contents.h"
@@ -70,9 +70,9 @@ class StagePlan {
             const CancelToken& cancel,
             PlanAccess access = PlanAccess::kRun);
 
-  // Plans anew after the problems, of the same references, or the options
-  // changed.
-  void Update();
+  // Plans anew after the problems, of the same references, changed. What the
+  // run has made meanwhile stays, with --Hpm.overwrite, too.
+  void Update() { Plan(/*look_at_maps=*/true); }
 
   const std::vector<Stage>& stages() const { return stages_; }
   // Whether problem p has to be computed in stage s, and can be: its final
@@ -81,7 +81,6 @@ class StagePlan {
   bool IsNeeded(int s, int p) const { return needed_[s][p]; }
   // As it was found, by the newest plan.
   MapState StateAt(int s, int p) const { return states_[s][p]; }
-  int CountNeeded(int s) const;
   // True if maps exist that were made with other options, from other images, by
   // another version or by another program, in the eyes of all plans so far.
   bool ReplacesForeignMaps() const { return replaces_foreign_maps_; }
@@ -120,11 +119,6 @@ class StagePlan {
   Camera CameraOf(int s, int image) const {
     return LevelCamera(workspace_.camera(image), stages_[s].spec.level);
   }
-  // The same around the centre of another one, halved `more_levels` times more.
-  Camera CameraAround(int s, int image, int origin, int more_levels) const {
-    return LevelCamera(workspace_.CameraAround(image, origin),
-                       stages_[s].spec.level + more_levels);
-  }
   bool WritesGraph(int s, int image) const;
 
  private:
@@ -132,6 +126,7 @@ class StagePlan {
     MapState state = MapState::kMissing;
     std::vector<std::filesystem::path> damaged;
   };
+  void Plan(bool look_at_maps);
   Found Look(int s, int p, bool may_be_cut) const;
   // Whether the files are those the stamp vouches for; see the constructor.
   bool AreIntact(int s, int image, Stamp* stamp, Found* found) const;

@@ -14,8 +14,8 @@ MethodParams MakeMethodParams(const ControllerOptions& given) {
   params.num_view_draws = colmap.num_samples;
   params.geom_weight = static_cast<float>(hpm.geom_weight);
   params.geom_max_error = static_cast<float>(hpm.geom_max_error);
-  params.max_drawn_views = hpm.max_views;
-  params.region_max_gradient = static_cast<float>(hpm.weak_gradient);
+  params.max_views = hpm.max_views;
+  params.weak_gradient = static_cast<float>(hpm.weak_gradient);
   return params;
 }
 

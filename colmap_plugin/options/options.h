@@ -6,6 +6,7 @@
 #include "colmap_plugin/workspace/problem.h"
 #include "colmap_plugin/workspace/workspace.h"
 #include "src/engine/method.h"
+#include "src/engine/run_spec.h"
 
 #include <string>
 
@@ -44,7 +45,8 @@ struct HpmOptions {
   std::string method = kDefaultMethod;
   std::string quality = "high";  // see colmap_plugin/options/quality.h
   std::string device = "auto";   // auto, cpu or cuda
-  int gpu_images = -1;  // in flight per entry of gpu_index; -1: by memory
+  int gpu_images = -1;  // in flight per entry of gpu_index; -1: by threads,
+                        // then memory
   std::string cpu_target =
       "auto";  // auto, scalar, or a SIMD target of this machine
   // -1: the method's own.
@@ -54,12 +56,11 @@ struct HpmOptions {
   int num_fine_iterations = -1;  // the same at levels finer than the coarsest
   int num_fine_geom_passes = -1;
   int max_views = -1;  // source views that judge a pixel in a visit
-  double weak_gradient =
-      MethodParams().region_max_gradient;           // grey levels per pixel
-  double geom_weight = MethodParams().geom_weight;  // lambda of that term
+  double weak_gradient = MethodParams().weak_gradient;  // grey levels per pixel
+  double geom_weight = MethodParams().geom_weight;      // lambda of that term
   double geom_max_error = MethodParams().geom_max_error;  // pixels, its cap
   int num_levels = -1;  // of the hierarchy; -1: by method and image size
-  double filter_min_agreement = 0.5;  // see needed_views.h
+  double filter_min_agreement = MapFilter().min_agreement;
   std::string log_format = "text";    // or json: one object a line
   bool keep_photometric = true;       // 0: only *.geometric.bin are published
   bool report = true;                 // stereo/report.html at the end of a run

@@ -67,7 +67,7 @@ std::vector<std::string> SummaryLines(const ControllerOptions& options,
       fmt::format("Time {}, peak memory {:.2f} GiB{}",
                   FormatDuration(summary.seconds),
                   static_cast<double>(summary.peak_memory_bytes) / (1 << 30),
-                  summary.cpu_target.empty() ? "" : ", " + summary.cpu_target));
+                  summary.backend.empty() ? "" : ", " + summary.backend));
   const WorkspaceOptions& workspace = options.workspace;
   const std::filesystem::path stereo = StereoPath(workspace);
   lines.push_back(fmt::format("Maps: {} and {}",

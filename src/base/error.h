@@ -10,7 +10,7 @@ namespace hpm {
 // The value is the exit code of the program.
 enum class ErrorCode {
   kFailure = 1,  // anything unforeseen
-  kUsage = 2,    // command line or project file
+  kUsage = 2,    // command line, project file, or a call of the library
   kBadInput =
       3,         // a file of the workspace is missing, damaged or contradictory
   kPartial = 4,  // some images failed, the maps of the others are valid

@@ -73,8 +73,8 @@ HPM_HD void ChooseViews(const PixelVisit& visit,
   if (turn == params.num_views) turn = 0;  // rounding
   if (!params.few_views || trusted == 0) trusted |= 1u << turn;
   if (params.few_views) {
-    trusted = MostVoted(
-        trusted, votes, params.num_views, params.max_drawn_views, turn);
+    trusted =
+        MostVoted(trusted, votes, params.num_views, params.max_views, turn);
   }
   candidates->num_views = 0;
   for (int j = 0; j < params.num_views; ++j) {

@@ -39,19 +39,24 @@ HPM_HD void VisitPixel(const VisitParams& params,
   }
 }
 
-// One visit of a sweep that does. `params.geometric` is that of the sweep.
-// `src_centers`: in the reference camera frame; `consistent`: one mask per
-// pixel; both for kConsistency alone.
+// What a sweep is about, beside the pixel.
+struct SweepScope {
+  const VisitParams& params;  // `geometric` is that of the sweep
+  const SamplingPattern& pattern;
+  const Sweep& sweep;
+  const PixelState& state;
+  // For kConsistency alone.
+  const Vec3f* src_centers;  // in the reference camera frame
+  uint32_t* consistent;      // one mask per pixel
+};
+
+// One visit of a sweep that does.
 template <SweepKind kKind, class Cost>
-HPM_HD void VisitPixel(const VisitParams& params,
-                       const SamplingPattern& pattern,
-                       const Vec3f* src_centers,
-                       const Sweep& sweep,
-                       const PixelState& state,
-                       uint32_t* consistent,
+HPM_HD void VisitPixel(const SweepScope& scope,
                        const Cost& cost,
                        int col,
                        int row) {
+  const auto& [params, pattern, sweep, state, src_centers, consistent] = scope;
   static_assert(kKind != SweepKind::kFollow && kKind != SweepKind::kMedian,
                 "they need no cost");
   if constexpr (kKind == SweepKind::kConsistency) {

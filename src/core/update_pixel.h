@@ -21,7 +21,7 @@ HPM_HD void ViewProbabilities(const VisitParams& params,
                                                           candidates.exists,
                                                           good_cost);
   }
-  KeepLargest(params.max_drawn_views, candidates.num_views, probability);
+  KeepLargest(params.max_views, candidates.num_views, probability);
 }
 
 // What a hypothesis is worth beside its cost; nothing without a prior.

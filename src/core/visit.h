@@ -40,8 +40,8 @@ struct VisitParams {
   bool geometric;    // add the geometric term
   GeometricTerm geometric_term;
   PriorTerm prior_term;
-  int max_drawn_views;  // see KeepLargest()
-  int max_candidates;   // regions that a visit looks into
+  int max_views;       // see KeepLargest()
+  int max_candidates;  // regions that a visit looks into
   // Refinement without hypotheses from the whole depth range.
   bool search_near;
   bool ask_all_views;  // see ChooseViews()
@@ -79,17 +79,17 @@ HPM_HD PixelVisit VisitOf(const VisitParams& params,
 constexpr int kNumInitialViews = 4;
 
 // Mean over the drawn views, weighted; costs[k] belongs to weights.view[k], or
-// costs[view] to each view. No cost counts more than `worst`: a view that does
-// not see the plane at all, or shows the opposite of the reference, says no
-// more than one that shows something else. Else a surface that few views see
+// costs[weights.slot[k]] does. No cost counts more than `worst`: a view that
+// does not see the plane at all, or shows the opposite of the reference, says
+// no more than one that shows something else. Else a surface that few views see
 // loses against a wrong one behind it that all do.
 HPM_HD float WeightedMean(const ViewWeights& weights,
                           const float* costs,
-                          bool indexed_by_view,
+                          bool by_slot,
                           float worst) {
   float sum = 0;
   for (int k = 0; k < weights.num_views; ++k) {
-    const float cost = costs[indexed_by_view ? weights.slot[k] : k];
+    const float cost = costs[by_slot ? weights.slot[k] : k];
     sum += weights.weight[k] * Smaller(cost, worst);
   }
   return sum / weights.weight_sum;

@@ -35,11 +35,8 @@ class CpuBackend : public Backend {
   }
 
   uint64_t MemoryNeeded(int width, int height, int num_srcs) const override {
-    const uint64_t pixels = static_cast<uint64_t>(width) * height;
-    // Twice: the engine merges levels with a second map.
-    const uint64_t state =
-        2 * (sizeof(Plane) + sizeof(float) + sizeof(uint32_t));
-    return CpuViews::MemoryNeeded(width, height, num_srcs) + pixels * state;
+    return kEngineBytesPerPixel * width * height +
+           CpuViews::MemoryNeeded(width, height, num_srcs);
   }
 
   void SetViews(const ViewSet& views, const MethodParams& params) override {
@@ -128,10 +125,10 @@ class CpuBackend : public Backend {
                 const Sweep& sweep,
                 const PixelState& state,
                 const RunControl& control) {
+    const SweepScope scope = {params, pattern, sweep, state, nullptr, nullptr};
     const auto visit = [&](auto kind, int col, int row) {
       const CpuPixelCost cost = CostAt(col, row);
-      VisitPixel<kind.value>(
-          params, pattern, nullptr, sweep, state, nullptr, cost, col, row);
+      VisitPixel<kind.value>(scope, cost, col, row);
       return cost.num_evaluations();
     };
     HalfSweep(state, sweep.color, control, [&](int col, int row) {

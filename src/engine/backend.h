@@ -20,6 +20,11 @@ struct RunControl {
   std::function<void(double)> progress;  // share of the pass that is done, 0..1
 };
 
+// Held by the engine beside what a backend takes, per pixel of the reference: a
+// HypothesisMap, and as much again while levels are merged or priors made.
+constexpr uint64_t kEngineBytesPerPixel =
+    2 * (sizeof(Plane) + sizeof(float) + sizeof(uint32_t));
+
 class Backend {
  public:
   virtual ~Backend() = default;
@@ -27,8 +32,8 @@ class Backend {
   // E.g. "cpu avx3, 2 threads"; goes into the log and the run record.
   virtual std::string Name() const = 0;
 
-  // Working memory, in bytes, for one reference of this size beside the inputs
-  // handed to SetViews.
+  // Working memory of the host, in bytes, for one reference of this size beside
+  // the inputs handed to SetViews: the engine's and the backend's own.
   virtual uint64_t MemoryNeeded(int width, int height, int num_srcs) const = 0;
 
   // Takes the images and cameras of a problem; replaces the problem before.

@@ -34,11 +34,11 @@ class ImageStore {
  public:
   virtual ~ImageStore() = default;
 
-  // From now on images are halved `level` times.
+  // Between two stages: from now on images are halved `level` times.
   virtual void StartStage(int level) = 0;
 
   // As many as there are requests; called by several threads at once. Throws
-  // UnreadableImage.
+  // UnreadableImage, and Error(kUsage) for images it knows nothing of.
   virtual std::vector<std::shared_ptr<const GrayImage>> Images(
       const std::vector<ImageRequest>& requests) = 0;
 };

@@ -13,9 +13,6 @@
 namespace hpm {
 namespace {
 
-// The program itself, libraries, decoders, stacks of threads.
-constexpr uint64_t kOverheadBytes = 200ull << 20;
-
 constexpr uint64_t kPlentyBytes = 512ull << 20;
 
 uint64_t ControlGroupLimit() {

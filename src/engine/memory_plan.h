@@ -5,6 +5,9 @@
 
 namespace hpm {
 
+// The program itself, libraries, decoders, stacks of threads.
+constexpr uint64_t kOverheadBytes = 200ull << 20;
+
 // Bytes this process may use: the least of physical memory, the control group's
 // limit and the address space limit (ulimit -v).
 uint64_t MemoryLimit();

@@ -3,7 +3,6 @@
 #include "src/image/middle_pixel.h"
 #include "src/image/shrink_image.h"
 
-#include <cmath>
 #include <string>
 
 namespace hpm {
@@ -22,14 +21,29 @@ InverseDepthMap InverseDepthOf(const std::vector<Plane>& planes,
       const size_t at =
           static_cast<size_t>(middle.Of(row, camera.height)) * camera.width +
           middle.Of(col, camera.width);
-      const float z = DepthAt(
-          camera, planes[at], middle.CenterOf(col), middle.CenterOf(row));
-      const bool is_depth =
-          planes[at].distance > 0 && std::isfinite(z) && z > 0;
-      inverse.push_back(is_depth ? 1 / z : 0);
+      inverse.push_back(
+          InverseDepthOfBlock(camera, planes[at], middle, col, row));
     }
   }
   return InverseDepthMap::Of(inverse);
+}
+
+// What `made` has for the key, else make(). That takes long and all threads, so
+// it is done without the mutex: two may make the same, nobody waits.
+template <class Made, class Make>
+typename Made::mapped_type FindOrMake(const typename Made::key_type& key,
+                                      std::mutex* mutex,
+                                      Made* made,
+                                      const Make& make) {
+  {
+    const std::lock_guard<std::mutex> lock(*mutex);
+    const auto found = made->find(key);
+    if (found != made->end()) return found->second;
+  }
+  typename Made::mapped_type value =
+      std::make_shared<typename Made::mapped_type::element_type>(make());
+  const std::lock_guard<std::mutex> lock(*mutex);
+  return made->emplace(key, std::move(value)).first->second;
 }
 
 }  // namespace
@@ -40,7 +54,6 @@ MemoryImageStore::MemoryImageStore(std::vector<GrayImage> images) {
 }
 
 void MemoryImageStore::StartStage(int level) {
-  const std::lock_guard<std::mutex> lock(mutex_);
   if (level != level_) halved_.clear();
   level_ = level;
 }
@@ -48,18 +61,20 @@ void MemoryImageStore::StartStage(int level) {
 std::vector<std::shared_ptr<const GrayImage>> MemoryImageStore::Images(
     const std::vector<ImageRequest>& requests) {
   std::vector<std::shared_ptr<const GrayImage>> images;
-  const std::lock_guard<std::mutex> lock(mutex_);
   for (const ImageRequest& request : requests) {
-    const auto& full = images_.at(request.image);
-    const int level = level_ + request.more_levels;
-    if (level == 0) {
-      images.push_back(full);
-      continue;
+    if (request.image < 0 ||
+        request.image >= static_cast<int>(images_.size())) {
+      throw Error(ErrorCode::kUsage,
+                  "image " + std::to_string(request.image) +
+                      ": there is no picture of it");
     }
-    auto& halved = halved_[{request.image, level}];
-    if (halved == nullptr)
-      halved = std::make_shared<const GrayImage>(ShrinkImage(*full, level));
-    images.push_back(halved);
+    const auto& full = images_[request.image];
+    const int level = level_ + request.more_levels;
+    images.push_back(
+        level == 0 ? full
+                   : FindOrMake({request.image, level}, &mutex_, &halved_, [&] {
+                       return ShrinkImage(*full, level);
+                     }));
   }
   return images;
 }
@@ -125,14 +140,10 @@ std::vector<SourceDepth> MemoryMapStore::ReadSourceDepths(int stage,
 
 std::shared_ptr<const InverseDepthMap> MemoryMapStore::Depth(int problem,
                                                              int more_levels) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  auto& depth = depths_[{problem, more_levels}];
-  if (depth == nullptr) {
+  return FindOrMake({problem, more_levels}, &mutex_, &depths_, [&] {
     const Result& result = before_[problem];
-    depth = std::make_shared<const InverseDepthMap>(
-        InverseDepthOf(result.map.planes, result.camera, more_levels));
-  }
-  return depth;
+    return InverseDepthOf(result.map.planes, result.camera, more_levels);
+  });
 }
 
 void MemoryMapStore::Write(int, int problem, StageOutput* output) {

@@ -25,7 +25,7 @@ class MemoryImageStore : public ImageStore {
  private:
   std::vector<std::shared_ptr<const GrayImage>> images_;
   int level_ = 0;
-  std::mutex mutex_;
+  std::mutex mutex_;  // of halved_
   // By image and level, of the current stage.
   std::map<std::pair<int, int>, std::shared_ptr<const GrayImage>> halved_;
 };
@@ -61,7 +61,7 @@ class MemoryMapStore : public MapStore {
   std::map<int, int> problem_of_image_;
   int stage_ = -1;
   std::vector<Result> before_, now_;  // of stage_ - 1 and stage_
-  std::mutex mutex_;
+  std::mutex mutex_;                  // of depths_
   // Of before_, by problem and level.
   std::map<std::pair<int, int>, std::shared_ptr<const InverseDepthMap>> depths_;
 };

@@ -101,7 +101,7 @@ MethodParams DefaultParams(const Method& method) {
   params.cut_color = method.departures.cut_color;
   params.same_plane_bound = method.departures.same_plane_bound;
   params.worst_cost = method.departures.worst_cost;
-  params.max_drawn_views = method.numbers.max_views;
+  params.max_views = method.numbers.max_views;
   return params;
 }
 

@@ -205,7 +205,8 @@ const Plane* NearestPlane(const RegionPlanes& planes,
 }  // namespace
 
 // Numbers from the share of true planes among the candidates of four rendered
-// scenes (docs/algorithm.md).
+// scenes; why this evidence counts: docs/algorithm.md, "A plane needs
+// evidence of its own".
 bool IsBelievable(const RegionPlane& plane, const PlaneEvidence& evidence) {
   constexpr double kDistinct = 0.01, kContradicted = -0.01;  // cost
   constexpr double kMinSpread = 0.05;
@@ -227,9 +228,9 @@ MinedRegions MineRegions(const ViewSet& views,
                          uint64_t key,
                          const ScorePlanes& score) {
   const std::vector<Witness> witnesses = WitnessesOf(views);
-  if (witnesses.empty() || !(params.region_max_gradient > 0)) return {};
+  if (witnesses.empty() || !(params.weak_gradient > 0)) return {};
   const WeakRegions regions = FindWeakRegions(
-      *views.ref.image, params.region_max_gradient, params.region_min_share);
+      *views.ref.image, params.weak_gradient, params.region_min_share);
   if (regions.num_regions == 0) return {};
   const int step = LatticeStep(map);
   const int needed =

@@ -14,7 +14,7 @@ struct MethodParams {
   float sigma_color = 3;    // grey levels
   float cut_color = 0;      // grey levels; see PatchShape; 0: not cut
   int num_view_draws = 15;
-  int max_drawn_views = kMaxViews;
+  int max_views = kMaxViews;
   float depth_perturbation = 0.02f;        // relative
   float normal_perturbation = 0.0314159f;  // radians per axis
   float same_plane_bound =
@@ -28,7 +28,7 @@ struct MethodParams {
       1.0f / 64;                   // sigma of the prior's depth / depth range
   float prior_angle = 0.0872665f;  // radians
   // Planes of regions without texture (src/prior/region_planes.h).
-  float region_max_gradient = 1.4f;  // grey levels per pixel
+  float weak_gradient = 1.4f;        // grey levels per pixel
   float region_min_share = 0.0005f;  // of the image
   float region_max_error = 1;        // pixels; between views
   float region_max_residual = 0.5f;  // pixels; of a point to its plane
@@ -55,18 +55,18 @@ struct Pass {
   bool ask_all_views = false;                  // see ChooseViews()
   bool search_near = false;          // no hypotheses from the whole depth range
   int max_candidates = kNumRegions;  // regions that a visit looks into
-  int max_drawn_views = kMaxViews;   // and not more than of MethodParams
-  // A visit asks only max_drawn_views of the views that the pixel trusted last,
+  int max_views = kMaxViews;         // and not more than of MethodParams
+  // A visit asks only max_views of the views that the pixel trusted last,
   // those that its neighbours vote for; see ChooseViews().
   bool few_views = false;
   // Only one colour of the checkerboard is visited after the start; the other
   // one follows it in the end (src/core/take_neighbour.h).
-  bool half = false;
+  bool half_visits = false;
   // After the clean-up every pixel takes the plane that its neighbourhood lies
   // on (src/engine/local_planes.h).
   bool fit_planes = false;
 
-  int first_color() const { return half ? 1 : 0; }
+  int first_color() const { return half_visits ? 1 : 0; }
   // Half-sweeps that count for the progress: those with matching costs.
   int NumSteps() const {
     return (start == StartFrom::kStored ? 0 : 2) +

@@ -58,8 +58,8 @@ void MergeLevels(const HypothesisMap& carried,
 std::vector<bool> ForgetTextured(const GrayImage& image,
                                  const MethodParams& params,
                                  HypothesisMap* map) {
-  const WeakRegions regions = FindWeakRegions(
-      image, params.region_max_gradient, params.region_min_share);
+  const WeakRegions regions =
+      FindWeakRegions(image, params.weak_gradient, params.region_min_share);
   std::vector<bool> textured(map->planes.size(), false);
   regions.ForEachBand([&](const Rows& rows) {
     const size_t end = static_cast<size_t>(rows.end) * regions.width;
@@ -146,8 +146,10 @@ void RunPasses(Backend* backend,
       PhaseTimer timer(times, PhaseName(pass.kind));
       backend->Run(pass, schedule.pattern, map, pass_control);
     }
-    if (stage.from_coarser && pass.kind == PassKind::kBasic)
+    if (stage.from_coarser && pass.kind == PassKind::kBasic) {
       MergeLevels(carried, searched, map);
+      carried = {};  // before priors are made
+    }
     if (pass.fit_planes) {
       PhaseTimer timer(times, "fit planes");
       FitLocalPlanes(views.ref.camera,

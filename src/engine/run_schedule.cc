@@ -1,12 +1,33 @@
 #include "src/engine/run_schedule.h"
 
+#include "src/core/limits.h"
 #include "src/engine/run_stage.h"
 
 #include <mutex>
 #include <vector>
 
+#include <fmt/format.h>
+
 namespace hpm {
 namespace {
+
+void CheckSpec(const RunSpec& spec) {
+  const std::vector<StageSpec>& stages = spec.schedule.stages;
+  // A backend without views cannot say what they confirm.
+  if (spec.filter && !stages.empty() && stages.back().passes.empty()) {
+    throw Error(ErrorCode::kUsage,
+                "the last stage has no passes, so that nothing can be "
+                "filtered; give it one, or no filter");
+  }
+  for (const Problem& problem : spec.problems) {
+    if (problem.sources.size() <= kMaxViews) continue;
+    throw Error(ErrorCode::kUsage,
+                fmt::format("image {}: {} sources, at most {} can be matched",
+                            problem.image,
+                            problem.sources.size(),
+                            kMaxViews));
+  }
+}
 
 class ScheduledRun {
  public:
@@ -140,6 +161,7 @@ void RunSchedule(const RunSpec& spec,
                  MapStore* maps,
                  WorkerPool* workers,
                  const RunEvents& events) {
+  CheckSpec(spec);
   ScheduledRun(spec, images, maps, workers, events).Run();
 }
 

@@ -38,7 +38,8 @@ struct RunEvents {
 // makes this a resumed run, or one share of a stage.
 //
 // Throws UnreadableImage, Error(kInterrupted), and what stores and backends
-// throw.
+// throw; Error(kUsage) for a spec that cannot be run and for pictures of
+// another size than their cameras.
 void RunSchedule(const RunSpec& spec,
                  ImageStore* images,
                  MapStore* maps,

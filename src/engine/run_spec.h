@@ -15,7 +15,7 @@ namespace hpm {
 struct MapFilter {
   // Of fewer sources than min_num_consistent all must confirm a pixel.
   FilterParams params;
-  double min_agreement = 0.66;  // see needed_views.h
+  double min_agreement = 0.5;  // see needed_views.h
 };
 
 struct RunSpec {

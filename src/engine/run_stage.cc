@@ -5,9 +5,28 @@
 #include "src/prior/upsample_prior.h"
 
 #include <algorithm>
+#include <memory>
+
+#include <fmt/format.h>
 
 namespace hpm {
 namespace {
+
+View ViewOf(int image,
+            const Camera& camera,
+            const std::shared_ptr<const GrayImage>& picture) {
+  if (picture->width != camera.width || picture->height != camera.height) {
+    throw Error(ErrorCode::kUsage,
+                fmt::format("image {}: the picture has {} x {} pixels, its "
+                            "camera {} x {}",
+                            image,
+                            picture->width,
+                            picture->height,
+                            camera.width,
+                            camera.height));
+  }
+  return {camera, picture, nullptr};
+}
 
 ViewSet MakeViews(const Problem& problem,
                   const StageSpec& stage,
@@ -21,14 +40,15 @@ ViewSet MakeViews(const Problem& problem,
   }
   const auto pictures = images->Images(requests);
   ViewSet views;
-  views.ref = {
-      LevelCamera(problem.camera, stage.level), pictures.front(), nullptr};
+  views.ref = ViewOf(problem.image,
+                     LevelCamera(problem.camera, stage.level),
+                     pictures.front());
   for (size_t j = 0; j < num_srcs; ++j) {
     const ProblemSource& source = problem.sources[j];
     views.srcs.push_back(
-        {LevelCamera(source.camera, stage.level + source.more_levels),
-         pictures[j + 1],
-         nullptr});
+        ViewOf(source.image,
+               LevelCamera(source.camera, stage.level + source.more_levels),
+               pictures[j + 1]));
   }
   views.depth_min = problem.depth_min;
   views.depth_max = problem.depth_max;

@@ -65,7 +65,8 @@ class StageList {
       AddPhotometric(level,
                      level < coarsest ? StartFrom::kStored : StartFrom::kRandom,
                      numbers_.num_iterations,
-                     PriorLevels(method_.priors, num_levels_));
+                     PriorLevels(method_.priors, num_levels_),
+                     numbers_.num_geom_passes);
       for (int i = 0; i < numbers_.num_geom_passes; ++i)
         AddGeometric(level, RegionPriors::kNone, false);
     }
@@ -89,7 +90,8 @@ class StageList {
       AddPhotometric(level,
                      is_coarsest ? StartFrom::kRandom : StartFrom::kMissing,
                      num_iterations,
-                     {});
+                     {},
+                     num_geom_passes);
       for (int i = 0; i < num_geom_passes; ++i) {
         const bool last = i + 1 == num_geom_passes;
         AddGeometric(
@@ -101,11 +103,15 @@ class StageList {
   }
 
   // Basic passes, then prior-assisted ones on the triangles of `prior_levels`.
-  // Without any pass the stage hands on what came up from the coarser level.
+  // Without any pass the stage hands on what came up from the coarser level;
+  // the last one of the run does not, for a filter asks what was matched.
   void AddPhotometric(int level,
                       StartFrom start,
                       int num_iterations,
-                      const std::vector<int>& prior_levels) {
+                      const std::vector<int>& prior_levels,
+                      int num_geom_passes_after) {
+    if (level == 0 && num_geom_passes_after == 0 && prior_levels.empty())
+      num_iterations = std::max(1, num_iterations);
     StageSpec stage;
     stage.level = level;
     stage.from_coarser = start != StartFrom::kRandom;
@@ -137,9 +143,9 @@ class StageList {
     pass.regions = regions;
     pass.search_near = departures.search_near;
     pass.max_candidates = departures.geom_candidates;
-    pass.max_drawn_views = departures.geom_views;
+    pass.max_views = departures.geom_views;
     pass.few_views = departures.geom_views < kMaxViews;
-    pass.half = departures.half_visits && !last_of_level;
+    pass.half_visits = departures.half_visits && !last_of_level;
     pass.fit_planes = departures.fit_planes && last_of_level && level == 0;
     stage.passes.push_back(pass);
     stages_->push_back(stage);

@@ -9,7 +9,7 @@
 
 namespace hpm {
 
-// -1: as the method's row has it.
+// -1: as the method's row has it. The last stage has a pass at least.
 struct ScheduleOptions {
   std::string method = kDefaultMethod;
   int num_iterations = -1;

@@ -22,7 +22,7 @@ std::vector<Sweep> SweepsOf(const Pass& pass, uint64_t random_key) {
     sweep.key = CombineBits(pass_key, 1 + iteration);
     add_colors_from(pass.first_color());
   }
-  if (pass.half) {
+  if (pass.half_visits) {
     sweep.kind = SweepKind::kFollow;
     sweep.color = 0;
     sweeps.push_back(sweep);

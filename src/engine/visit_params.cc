@@ -31,7 +31,7 @@ VisitParams MakeVisitParams(const ViewSet& views, const MethodParams& params) {
   visit.depth_min = views.depth_min;
   visit.depth_max = views.depth_max;
   visit.num_view_draws = params.num_view_draws;
-  visit.max_drawn_views = params.max_drawn_views;
+  visit.max_views = params.max_views;
   visit.depth_perturbation = params.depth_perturbation;
   visit.normal_perturbation = params.normal_perturbation;
   visit.same_plane_bound = params.same_plane_bound;
@@ -55,7 +55,7 @@ VisitParams ForPass(VisitParams visit,
   visit.ask_all_views = pass.ask_all_views;
   visit.few_views = pass.few_views;
   visit.max_candidates = pass.max_candidates;
-  visit.max_drawn_views = std::min(visit.max_drawn_views, pass.max_drawn_views);
+  visit.max_views = std::min(visit.max_views, pass.max_views);
   if (pass.regions == RegionPriors::kStrong)
     visit.prior_term.gamma = params.region_gamma;
   return visit;

@@ -1,3 +1,4 @@
+// A prior of a coarser level, upsampled at one pixel: the work of a lane.
 #pragma once
 
 #include "src/core/upsample_plane.h"
@@ -5,7 +6,7 @@
 
 namespace hpm {
 
-// A prior of a coarser level at one pixel; the reference image guides.
+// The reference image guides.
 HPM_HD Plane UpsampledPriorAt(const DeviceProblem& problem,
                               const Plane* low,
                               int level,

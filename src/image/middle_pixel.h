@@ -2,7 +2,10 @@
 // the one in the middle of its block.
 #pragma once
 
+#include "src/core/plane.h"
+
 #include <algorithm>
+#include <cmath>
 
 namespace hpm {
 
@@ -24,5 +27,17 @@ class MiddlePixel {
  private:
   int factor_;
 };
+
+// 1/z at the centre of a block, of the plane that stands for it; 0 where it has
+// no depth.
+inline float InverseDepthOfBlock(const Camera& camera,
+                                 const Plane& plane,
+                                 const MiddlePixel& middle,
+                                 int block_col,
+                                 int block_row) {
+  const float z = DepthAt(
+      camera, plane, middle.CenterOf(block_col), middle.CenterOf(block_row));
+  return plane.distance > 0 && std::isfinite(z) && z > 0 ? 1 / z : 0;
+}
 
 }  // namespace hpm

@@ -214,7 +214,7 @@ TEST_F(CollectCandidatesTest, MatrixHoldsTheCostOfEachCandidateInEachView) {
 // own.
 TEST_F(CollectCandidatesTest, AsksTheViewsThatAreTrusted) {
   params_.num_views = 6;
-  params_.max_drawn_views = 2;
+  params_.max_views = 2;
   masks_[Index(kMiddle, kMiddle)] = 0b000111;
   const int dcol[4] = {0, 0, -5, 5}, drow[4] = {-5, 5, 0, 0};
   const uint32_t around[4] = {0b001101, 0b001100, 0b001010, 0b000000};

@@ -36,7 +36,7 @@ class UpdatePixelTest : public testing::Test {
     params_.depth_min = 2;
     params_.depth_max = 6;
     params_.num_view_draws = 15;
-    params_.max_drawn_views = 32;
+    params_.max_views = 32;
     params_.max_candidates = kNumRegions;
     params_.depth_perturbation = 0.02f;
     params_.normal_perturbation = 0.0314f;

@@ -2,6 +2,7 @@
 
 #include "src/core/sampling_pattern.h"
 #include "tests/cpu/scene_views.h"
+#include "tests/engine/compare_maps.h"
 
 #include <algorithm>
 #include <atomic>
@@ -60,12 +61,6 @@ class CpuBackendTest : public testing::Test {
     return result;
   }
 
-  template <class T>
-  static bool SameBytes(const std::vector<T>& a, const std::vector<T>& b) {
-    return a.size() == b.size() &&
-           std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
-  }
-
   const ViewSet views_ = MakeViews();
   const SamplingPattern pattern_ = MakeSamplingPattern(true, true);
   CancelToken cancel_;
@@ -75,9 +70,7 @@ class CpuBackendTest : public testing::Test {
 TEST_F(CpuBackendTest, OneAndTwoThreadsGiveTheSameBytes) {
   const Result one = RunAll(1);
   const Result two = RunAll(2);
-  EXPECT_TRUE(SameBytes(one.map.planes, two.map.planes));
-  EXPECT_TRUE(SameBytes(one.map.costs, two.map.costs));
-  EXPECT_TRUE(SameBytes(one.map.masks, two.map.masks));
+  EXPECT_TRUE(SameMaps(one.map, two.map));
   EXPECT_EQ(one.consistent, two.consistent);
   EXPECT_EQ(one.num_evaluations, two.num_evaluations);
   EXPECT_GT(one.num_evaluations, 0u);
@@ -154,7 +147,7 @@ TEST_F(CpuBackendTest, AHalfPassVisitsOneColour) {
   backend->Run(pass, pattern_, &full, control_);
   const uint64_t num_of_full = backend->num_cost_evaluations() - num_costs;
   num_costs = backend->num_cost_evaluations();
-  pass.half = true;
+  pass.half_visits = true;
   backend->Run(pass, pattern_, &map, control_);
   EXPECT_LT(backend->num_cost_evaluations() - num_costs, 0.8 * num_of_full);
   const auto same_plane = [&](const Plane& a, const Plane& b) {

@@ -5,11 +5,11 @@
 #include "src/cpu/cpu_backend.h"
 #include "src/engine/gpu_error.h"
 #include "src/gpu/self_test.h"
+#include "tests/engine/compare_maps.h"
 #include "tests/gpu/emulated_backend.h"
 #include "tests/gpu/test_problem.h"
 
 #include <cmath>
-#include <cstring>
 #include <thread>
 
 #include <gtest/gtest.h>
@@ -68,37 +68,13 @@ class GpuTest : public testing::Test {
     return result;
   }
 
-  template <class T>
-  static bool SameBytes(const std::vector<T>& a, const std::vector<T>& b) {
-    return a.size() == b.size() &&
-           std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
-  }
   static void ExpectSameBytes(const Result& a, const Result& b) {
     EXPECT_TRUE(SameBytes(a.basic.planes, b.basic.planes));
     EXPECT_TRUE(SameBytes(a.prior.planes, b.prior.planes));
-    EXPECT_TRUE(SameBytes(a.geometric.planes, b.geometric.planes));
-    EXPECT_TRUE(SameBytes(a.geometric.costs, b.geometric.costs));
-    EXPECT_TRUE(SameBytes(a.geometric.masks, b.geometric.masks));
+    EXPECT_TRUE(SameMaps(a.geometric, b.geometric));
     EXPECT_TRUE(SameBytes(a.half.planes, b.half.planes));
     EXPECT_EQ(a.consistent, b.consistent);
     EXPECT_EQ(a.num_evaluations, b.num_evaluations);
-  }
-
-  // Share of pixels whose depths differ by more than 1 %.
-  static double DifferingShare(const HypothesisMap& a,
-                               const HypothesisMap& b,
-                               const Camera& camera) {
-    int num_differing = 0;
-    for (int row = 0; row < a.height; ++row) {
-      for (int col = 0; col < a.width; ++col) {
-        const size_t at = static_cast<size_t>(row) * a.width + col;
-        const float x = static_cast<float>(col), y = static_cast<float>(row);
-        const float za = DepthAt(camera, a.planes[at], x, y);
-        const float zb = DepthAt(camera, b.planes[at], x, y);
-        num_differing += !(std::abs(za - zb) <= 0.01f * zb);
-      }
-    }
-    return num_differing / static_cast<double>(a.planes.size());
   }
 
   inline static std::vector<RenderedView> rendered_;

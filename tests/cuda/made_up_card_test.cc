@@ -6,11 +6,10 @@
 #include "src/cpu/cpu_backend.h"
 #include "src/engine/gpu_error.h"
 #include "src/gpu/self_test.h"
-#include "tests/engine/estimate.h"
+#include "tests/engine/compare_maps.h"
 #include "tests/gpu/test_problem.h"
+#include "tests/gpu/whole_runs.h"
 
-#include <algorithm>
-#include <cstring>
 #include <memory>
 #include <vector>
 
@@ -28,16 +27,8 @@ struct Result {
   uint64_t num_evaluations = 0;
 };
 
-template <class Vector>
-bool SameBytes(const Vector& a, const Vector& b) {
-  return a.size() == b.size() &&
-         std::memcmp(a.data(), b.data(), a.size() * sizeof(a[0])) == 0;
-}
-
 void ExpectSame(const Result& a, const Result& b) {
-  EXPECT_TRUE(SameBytes(a.map.planes, b.map.planes));
-  EXPECT_TRUE(SameBytes(a.map.costs, b.map.costs));
-  EXPECT_TRUE(SameBytes(a.map.masks, b.map.masks));
+  EXPECT_TRUE(SameMaps(a.map, b.map));
   EXPECT_EQ(a.consistent, b.consistent);
   EXPECT_EQ(a.scores, b.scores);
   EXPECT_EQ(a.num_evaluations, b.num_evaluations);
@@ -117,38 +108,13 @@ TEST_F(MadeUpCardTest, GivesTheBytesOfTheScalarCpuBackend) {
   }
 }
 
-// Whole methods: maps that the engine merges, fits and hands from stage to
-// stage on the host between passes on the card.
 TEST_F(MadeUpCardTest, WholeRunsGiveTheBytesOfTheScalarCpuBackend) {
-  SceneOptions scene;
-  scene.num_views = 3;
-  scene.width = 31;
-  scene.height = 22;
-  const auto views = RenderViews(MakeScene("low_texture_wall", scene), 1);
-  for (const char* method : {"hpm", "acmm", "hpm_plus"}) {
-    ScheduleOptions options;
-    options.method = method;
-    options.num_levels = 2;
-    options.num_iterations = 1;
-    options.num_geom_iterations = 1;
-    options.num_geom_passes = 2;
-    RunSpec spec = SceneSpec(views, options);
-    spec.filter = MapFilter{{0.1f, 0.05f, 1.0f, 2}};
-    WorkerPool card(Make());
-    WorkerPool cpu(MakeCpuBackend("scalar", 1));
-    const auto a = EstimateScene(&card, views, spec, 2);
-    const auto b = EstimateScene(&cpu, views, spec, 2);
-    for (int i = 0; i < 2; ++i) {
-      EXPECT_TRUE(SameBytes(a[i].planes, b[i].planes)) << method << i;
-      const auto num_left = std::count_if(
-          a[i].planes.begin(), a[i].planes.end(), [](const Plane& plane) {
-            return plane.distance > 0;
-          });
-      EXPECT_GT(num_left, 50) << method << i;
-      EXPECT_TRUE(SameBytes(a[i].costs, b[i].costs)) << method << i;
-      EXPECT_TRUE(SameBytes(a[i].masks, b[i].masks)) << method << i;
-    }
-  }
+  ExpectWholeRunsOfTheScalarCpuBackend([] { return Make(); });
+}
+
+// The engine merges levels on the host, whoever matches.
+TEST_F(MadeUpCardTest, MemoryNeededCoversTwoMapsOnTheHost) {
+  EXPECT_GE(Make()->MemoryNeeded(1000, 1000, 1), 1000u * 1000u * 48u);
 }
 
 // What the card made itself need not come back to it for the filter; what the

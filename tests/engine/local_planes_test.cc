@@ -1,6 +1,7 @@
 #include "src/engine/local_planes.h"
 
 #include "src/core/rng.h"
+#include "tests/engine/compare_maps.h"
 #include "tests/engine/readable_local_planes.h"
 #include "tests/prior/prior_scene.h"
 
@@ -178,10 +179,7 @@ TEST(FitLocalPlanes, AllTargetsGiveTheBytesOfTheReadableForm) {
       hwy::SetSupportedTargetsForTest(target);
       FitLocalPlanes(camera, image, kTolerance, range, &map);
       hwy::SetSupportedTargetsForTest(0);
-      EXPECT_EQ(std::memcmp(map.planes.data(),
-                            expected.planes.data(),
-                            map.planes.size() * sizeof(Plane)),
-                0)
+      EXPECT_TRUE(SameBytes(map.planes, expected.planes))
           << hwy::TargetName(target) << " " << width << "x" << height;
     }
     if (width < 61) continue;

@@ -36,7 +36,7 @@ class Room : public testing::Test {
     options.method = method;
     options.num_levels = 2;
     RunSpec spec = SceneSpec(views_, options);
-    if (!with_regions) spec.params.region_max_gradient = 0;
+    if (!with_regions) spec.params.weak_gradient = 0;
     std::vector<GrayImage> pictures;
     for (const RenderedView& view : views_)
       pictures.push_back({view.camera.width, view.camera.height, view.grey});

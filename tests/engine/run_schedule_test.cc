@@ -246,6 +246,39 @@ TEST_F(RunScheduleTest, ACancelledRunEnds) {
   EXPECT_EQ(store_->written.count({2, 0}), 0u);
 }
 
+TEST_F(RunScheduleTest, WhatCannotBeRunIsRefusedBeforeAnythingIsDone) {
+  const auto expect_usage_error = [&](const char* what) {
+    try {
+      Run();
+      ADD_FAILURE() << "no error about: " << what;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::kUsage);
+      EXPECT_THAT(error.what(), testing::HasSubstr(what));
+    }
+    EXPECT_THAT(log_.calls, testing::IsEmpty());
+    for (int i = 0; i < 2; ++i)
+      cpus_.push_back(std::make_unique<StillBackend>(&log_));
+  };
+  const RunSpec good = spec_;
+  spec_.problems[1].sources.resize(kMaxViews + 1);
+  expect_usage_error("33 sources");
+  spec_ = good;
+  spec_.problems[0].camera.width *= 2;
+  expect_usage_error("its camera 24 x 8");
+  spec_ = good;
+  spec_.problems[0].sources[1].camera.height /= 2;
+  expect_usage_error("image 2: the picture has 12 x 8 pixels");
+  spec_ = good;
+  for (const int image : {-1, kNumImages}) {
+    spec_.problems[0].sources[0].image = image;
+    expect_usage_error("there is no picture");
+  }
+  spec_ = good;
+  spec_.filter = MapFilter();
+  spec_.schedule.stages.back().passes.clear();
+  expect_usage_error("no passes");
+}
+
 class BrokenImages : public ImageStore {
  public:
   void StartStage(int) override {}

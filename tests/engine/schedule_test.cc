@@ -110,7 +110,7 @@ TEST_P(EveryMethod, OnlyOursDepartsFromThePaper) {
   EXPECT_EQ(DefaultParams(method).cut_color > 0, ours);
   EXPECT_EQ(DefaultParams(method).same_plane_bound > 0, ours);
   EXPECT_EQ(DefaultParams(method).worst_cost < kMaxCost, ours);
-  EXPECT_EQ(DefaultParams(method).max_drawn_views < kMaxViews, ours);
+  EXPECT_EQ(DefaultParams(method).max_views < kMaxViews, ours);
   for (const StageSpec& stage : MakeSchedule(Options(GetParam())).stages) {
     for (const Pass& pass : stage.passes) {
       EXPECT_EQ(pass.ask_all_views, !ours);
@@ -118,7 +118,7 @@ TEST_P(EveryMethod, OnlyOursDepartsFromThePaper) {
       EXPECT_EQ(pass.search_near, ours && stage.geometric);
       EXPECT_EQ(pass.few_views, ours && stage.geometric);
       EXPECT_EQ(pass.max_candidates < kNumRegions, ours && stage.geometric);
-      EXPECT_TRUE(ours || !(pass.half || pass.fit_planes));
+      EXPECT_TRUE(ours || !(pass.half_visits || pass.fit_planes));
     }
   }
 }
@@ -174,6 +174,19 @@ TEST(Schedule, WithoutGeometricPassesFinerLevelsMatch) {
   EXPECT_EQ(schedule.stages[1].passes[0].num_iterations, 1);
 }
 
+// Else nothing would be there to be filtered.
+TEST_P(EveryMethod, TheLastStageMatches) {
+  ScheduleOptions options = Options(GetParam());
+  for (const int num_geom_passes : {0, 1}) {
+    options.num_geom_passes = num_geom_passes;
+    options.num_iterations = 0;
+    options.num_fine_iterations = 0;
+    options.num_fine_geom_passes = 0;
+    const Schedule schedule = MakeSchedule(options);
+    EXPECT_FALSE(schedule.stages.back().passes.empty());
+  }
+}
+
 TEST(Schedule, OnlyTheVeryLastPassIsStrongAndFitsPlanes) {
   const Schedule schedule = MakeSchedule(Options("hpm_plus"));
   for (const StageSpec& stage : schedule.stages) {
@@ -192,7 +205,7 @@ TEST(Schedule, OnlyTheLastGeometricPassOfALevelVisitsAllPixels) {
     if (!stage.geometric) continue;
     const bool last = s + 1 == schedule.stages.size() ||
                       schedule.stages[s + 1].level < stage.level;
-    EXPECT_EQ(stage.passes.back().half, !last) << s;
+    EXPECT_EQ(stage.passes.back().half_visits, !last) << s;
   }
 }
 

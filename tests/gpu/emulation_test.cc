@@ -2,12 +2,13 @@
 // a card adds to this is its own rounding and its hardware.
 #include "src/core/sampling_pattern.h"
 #include "src/cpu/cpu_backend.h"
-#include "tests/engine/estimate.h"
+#include "tests/engine/compare_maps.h"
 #include "tests/gpu/emulated_backend.h"
 #include "tests/gpu/test_problem.h"
+#include "tests/gpu/whole_runs.h"
 
-#include <cmath>
-#include <cstring>
+#include <cstdio>
+#include <memory>
 
 #include <gtest/gtest.h>
 
@@ -25,17 +26,6 @@ struct Result {
   std::vector<uint32_t> photometric_filter, geometric_filter;
   uint64_t num_evaluations = 0;
 };
-
-template <class T>
-bool SameBytes(const std::vector<T>& a, const std::vector<T>& b) {
-  return a.size() == b.size() &&
-         std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
-}
-
-bool SameMaps(const HypothesisMap& a, const HypothesisMap& b) {
-  return SameBytes(a.planes, b.planes) && SameBytes(a.costs, b.costs) &&
-         SameBytes(a.masks, b.masks);
-}
 
 class EmulationTest : public testing::Test {
  protected:
@@ -170,49 +160,11 @@ TEST_F(EmulationTest, PartialStartsAndScoresGiveTheBytesOfTheCpuBackend) {
   ExpectSameBytes(results[0], results[1]);
 }
 
-// Whole methods through the engine: priors that the backend upsamples, halved
-// images, levels that are merged, mined regions, maps of all sources.
 TEST_F(EmulationTest, WholeRunsGiveTheBytesOfTheCpuBackend) {
-  SceneOptions scene;
-  scene.num_views = 3;
-  scene.width = 43;
-  scene.height = 32;
-  const auto views = RenderViews(MakeScene("low_texture_wall", scene), 2);
-  for (const char* method : {"hpm", "acmm", "hpm_plus"}) {
-    ScheduleOptions options;
-    options.method = method;
-    options.num_levels = 2;
-    options.num_iterations = 2;
-    options.num_geom_iterations = 1;
-    options.num_geom_passes = 1;
-    RunSpec spec = SceneSpec(views, options);
-    spec.filter = MapFilter{{0.1f, 0.05f, 1.0f, 2}};
-    WorkerPool emulated(std::make_unique<EmulatedBackend>(
-        EmulationOptions{EmulatedCost::kCore, 3, 16}));
-    WorkerPool cpu(MakeCpuBackend("scalar", 2));
-    const auto a = EstimateScene(&emulated, views, spec, 2);
-    const auto b = EstimateScene(&cpu, views, spec, 2);
-    for (int i = 0; i < 2; ++i)
-      EXPECT_TRUE(SameMaps(a[i], b[i])) << method << ", view " << i;
-  }
-}
-
-// Shares of pixels whose depth differs by more than 1 %, beside those where
-// both maps match badly.
-double DifferingShare(const HypothesisMap& a,
-                      const HypothesisMap& b,
-                      const Camera& camera) {
-  int num_differing = 0;
-  for (int row = 0; row < a.height; ++row) {
-    for (int col = 0; col < a.width; ++col) {
-      const size_t at = static_cast<size_t>(row) * a.width + col;
-      const float x = static_cast<float>(col), y = static_cast<float>(row);
-      const float za = DepthAt(camera, a.planes[at], x, y);
-      const float zb = DepthAt(camera, b.planes[at], x, y);
-      num_differing += !(std::abs(za - zb) <= 0.01f * zb);
-    }
-  }
-  return num_differing / static_cast<double>(a.planes.size());
+  ExpectWholeRunsOfTheScalarCpuBackend([] {
+    return std::make_unique<EmulatedBackend>(
+        EmulationOptions{EmulatedCost::kCore, 3, 16});
+  });
 }
 
 double MeanCost(const HypothesisMap& map) {

@@ -17,12 +17,12 @@ struct Launch {
 
 template <SweepKind kKind, class Cost>
 void Visit(const Launch& launch, const Cost& cost, const Pixel& pixel) {
-  VisitPixel<kKind>(launch.problem.params,
-                    launch.problem.pattern,
-                    launch.problem.src_centers,
-                    launch.sweep,
-                    launch.state,
-                    launch.consistent,
+  VisitPixel<kKind>({launch.problem.params,
+                     launch.problem.pattern,
+                     launch.sweep,
+                     launch.state,
+                     launch.problem.src_centers,
+                     launch.consistent},
                     cost,
                     pixel.col,
                     pixel.row);

@@ -18,9 +18,9 @@ inline const Pass kGeometric = {
 
 inline Pass HalfPass() {
   Pass pass = {PassKind::kGeometric, StartFrom::kCurrent, 1, 4};
-  pass.half = true;
+  pass.half_visits = true;
   pass.few_views = true;
-  pass.max_drawn_views = 2;
+  pass.max_views = 2;
   return pass;
 }
 

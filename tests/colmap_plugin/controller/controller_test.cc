@@ -316,6 +316,10 @@ TEST_F(ControllerTest, AnUnreadableImageIsPlannedWithoutAndComesBack) {
     const RunSummary summary = Run();
     EXPECT_THAT(summary.failed, testing::ElementsAre(ViewName(1)));
     EXPECT_EQ(summary.num_computed, overwrite ? kNumImages - 1 : 0);
+    if (overwrite) {
+      EXPECT_THAT(ReadFile(scene_.path() / "stereo/hpm_mvs/run.json"),
+                  testing::HasSubstr("\"Hpm.overwrite\": true"));
+    }
     EXPECT_THAT(InnerFolders(), testing::IsEmpty());
     // Nothing of maps of other options, and once.
     EXPECT_THAT(warnings_,

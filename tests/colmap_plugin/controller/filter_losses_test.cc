@@ -74,7 +74,7 @@ class FilterLossesTest : public testing::Test {
   HypothesisMap map_;
   std::vector<uint32_t> consistent_;
   FilterParams filter_ = {0.1f, 3 * kDegree, 1, 2};
-  double min_agreement_ = 0.66;
+  double min_agreement_ = 0.66;  // so that two of four are too few
   bool geometric_ = true;
 };
 

@@ -1,7 +1,9 @@
 #include "colmap_plugin/controller/run_budget.h"
 
 #include "src/cpu/cpu_backend.h"
+#include "src/engine/memory_plan.h"
 #include "tests/colmap_plugin/controller/scene_workspace.h"
+#include "tests/engine/still_backend.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -34,11 +36,14 @@ class RunBudgetTest : public testing::Test {
   }
 
   uint64_t Working() {
+    const auto backend = MakeCpuBackend(FindCpuTarget("scalar"), 1);
+    return Working({backend.get()});
+  }
+  uint64_t Working(const std::vector<const Backend*>& backends) {
     StereoProblem problem;
     problem.ref_image = 0;
     problem.src_images = {1, 2};
-    const auto backend = MakeCpuBackend(FindCpuTarget("scalar"), 1);
-    return LargestNeeds(scene_.Open(40), {problem}, *backend, true).working;
+    return LargestNeeds(scene_.Open(40), {problem}, backends, true).working;
   }
 
   SceneWorkspace scene_{SmallScene(3, 40, 30)};
@@ -81,6 +86,35 @@ TEST_F(RunBudgetTest, OneLargeSourceCounts) {
   WriteImage(2, ".png", 15, CV_8UC3);
   EXPECT_EQ(Decoded(2), FileBytes(2) + 225u * 40u * 30u * 4u);
   EXPECT_EQ(Working(), others + Decoded(2));
+}
+
+// A run that goes on with the CPU when its card fails needs memory for both.
+TEST_F(RunBudgetTest, TheHungriestBackendCounts) {
+  const auto cpu = MakeCpuBackend(FindCpuTarget("scalar"), 1);
+  StillBackend modest(nullptr);
+  EXPECT_LT(Working({&modest}), Working());
+  EXPECT_EQ(Working({&modest, cpu.get()}), Working());
+  EXPECT_EQ(Working({cpu.get(), &modest}), Working());
+}
+
+// A run is refused only where not even one image fits.
+TEST(ImagesInMemoryTest, WhatItAllowsIsNotRefused) {
+  constexpr uint64_t mib = 1 << 20;
+  for (uint64_t limit = 64 * mib; limit <= 4096 * mib; limit += 64 * mib) {
+    for (const uint64_t working : {1 * mib, 30 * mib, 300 * mib}) {
+      for (const uint64_t inputs : {1 * mib, 30 * mib, 300 * mib}) {
+        const MemoryNeeds needs = {working, inputs, 0};
+        const uint64_t n = ImagesInMemory(needs, 8, limit);
+        if (n == 1) continue;
+        EXPECT_NO_THROW(PlanCacheBytes(0, n * working, n * inputs, limit))
+            << n << " of " << working << " and " << inputs << " in " << limit;
+      }
+    }
+  }
+  const MemoryNeeds needs = {100 * mib, 50 * mib, 0};
+  EXPECT_EQ(ImagesInMemory(needs, 8, 1200 * mib), 4);
+  EXPECT_EQ(ImagesInMemory(needs, 3, 1200 * mib), 3);
+  EXPECT_EQ(ImagesInMemory(needs, 8, 100 * mib), 1);
 }
 
 TEST(DecodesAtOnceTest, FitIntoWhatMatchingTakes) {

@@ -54,12 +54,11 @@ class StagePlanTest : public testing::Test {
   }
 
   // The problems to compute in a stage.
-  static std::vector<int> Needed(const StagePlan& plan, int stage) {
+  std::vector<int> Needed(const StagePlan& plan, int stage) const {
     std::vector<int> needed;
-    for (int p = 0; p < 5; ++p) {
+    for (int p = 0; p < static_cast<int>(problems_.size()); ++p) {
       if (plan.IsNeeded(stage, p)) needed.push_back(p);
     }
-    EXPECT_EQ(plan.CountNeeded(stage), static_cast<int>(needed.size()));
     return needed;
   }
 
@@ -410,6 +409,15 @@ TEST_F(StagePlanTest, MissingConsistencyGraphsAreMadeWhenAskedFor) {
   EXPECT_THAT(Needed(Plan(), 3), IsEmpty());
 }
 
+// The run has forgotten the maps of others by then.
+TEST_F(StagePlanTest, AnUpdateOfAnOverwritingPlanKeepsWhatTheRunMade) {
+  options_.hpm.overwrite = true;
+  StagePlan plan = Plan();
+  for (int s = 0; s < 4; ++s) Finish(plan, s, 2);
+  plan.Update();
+  EXPECT_THAT(Needed(plan, 3), ElementsAre(0, 1, 3, 4));
+}
+
 // Images 1 and 2 are there for the reference 0 alone: image 0 reads maps of 1
 // before its last stage, image 1 those of 2 before that.
 TEST_F(StagePlanTest, MapsOfSourcesAreMadeAsFarAsOthersReadThem) {
@@ -458,7 +466,7 @@ TEST_F(StagePlanTest, AReferenceIsFinishedWhateverItsSourcesAre) {
 TEST_F(StagePlanTest, SourcesWithoutAProblemAreNotComputed) {
   problems_.resize(2);
   const StagePlan plan = Plan();
-  for (int s = 0; s < 4; ++s) EXPECT_EQ(plan.CountNeeded(s), 2);
+  for (int s = 0; s < 4; ++s) EXPECT_THAT(Needed(plan, s), ElementsAre(0, 1));
 }
 
 }  // namespace

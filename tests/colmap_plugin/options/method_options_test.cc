@@ -25,14 +25,14 @@ TEST(MethodOptions, DefaultsAreThePapersNotColmaps) {
 TEST(MethodOptions, NumbersThatAreNotGivenAreTheMethodsOwn) {
   ControllerOptions options;
   EXPECT_EQ(MakeScheduleOptions(options).num_iterations, 2);
-  EXPECT_EQ(MakeMethodParams(options).max_drawn_views, 4);
+  EXPECT_EQ(MakeMethodParams(options).max_views, 4);
   EXPECT_EQ(MakeMethodParams(options).cut_color, 15);
   options.hpm.method = "hpm";
-  EXPECT_EQ(MakeMethodParams(options).max_drawn_views, kMaxViews);
+  EXPECT_EQ(MakeMethodParams(options).max_views, kMaxViews);
   EXPECT_EQ(MakeMethodParams(options).cut_color, 0);
   options.hpm.max_views = 3;
   options.hpm.num_iterations = 0;
-  EXPECT_EQ(MakeMethodParams(options).max_drawn_views, 3);
+  EXPECT_EQ(MakeMethodParams(options).max_views, 3);
   EXPECT_EQ(MakeScheduleOptions(options).num_iterations, 3);
 }
 

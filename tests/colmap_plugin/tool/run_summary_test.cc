@@ -25,7 +25,7 @@ TEST(RunSummaryTest, TellsWhatWasDoneAndWhatComesNext) {
                            {FilterCriterion::kNumConsistent, 0.075}};
   summary.num_fusable = 11;
   summary.peak_memory_bytes = uint64_t{3} << 29;
-  summary.cpu_target = "AVX2";
+  summary.backend = "AVX2";
   EXPECT_EQ(SummaryLines(options, summary),
             (std::vector<std::string>{
                 "12 images: 7 computed, 4 kept from an earlier run, 1 failed",

@@ -1,4 +1,4 @@
-#include "src/engine/lru_cache.h"
+#include "colmap_plugin/controller/lru_cache.h"
 
 #include <string>
 
