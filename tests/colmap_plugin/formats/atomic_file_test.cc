@@ -88,6 +88,8 @@ std::string ThisHost() {
   return host;
 }
 
+RetryRules Quick() { return {3, std::chrono::milliseconds(1), 1}; }
+
 // Writes path with the faults that `prepare` sets; returns the error, if any.
 template <class Prepare>
 std::optional<Error> WriteWithFaults(const std::filesystem::path& path,
@@ -114,6 +116,55 @@ TEST(AtomicFile, SyncsTheFileBeforeRenamingAndTheFolderAfter) {
   EXPECT_EQ(ReadFile(folder / "f"), "0123456789");
 }
 
+TEST(AtomicFile, WhatWasFlushedIsNotSyncedAgain) {
+  const ScratchFolder folder;
+  faults = Faults();
+  faults.recording = true;
+  {
+    AtomicFile file(folder / "f");
+    file.Write("0123");
+    file.Flush();
+    file.Write("4567");
+    file.Flush();
+    file.Commit();
+  }
+  faults.recording = false;
+  EXPECT_THAT(faults.calls,
+              testing::ElementsAre("write",
+                                   "fsync",
+                                   "write",
+                                   "fsync",
+                                   "close",
+                                   "rename",
+                                   "fsync",
+                                   "close"));
+}
+
+TEST(AtomicFile, TheFolderIsOpenedAnewForEachTry) {
+  const ScratchFolder folder;
+  const RetryScope scope(nullptr, nullptr, Quick());
+  faults = Faults();
+  faults.recording = true;
+  {
+    AtomicFile file(folder / "f");
+    file.Write("0123");
+    file.Flush();
+    faults.fsync_error = ESTALE;
+    faults.num_failures = 1;
+    file.Commit();
+  }
+  faults.recording = false;
+  EXPECT_THAT(faults.calls,
+              testing::ElementsAre("write",
+                                   "fsync",
+                                   "close",
+                                   "rename",
+                                   "fsync",
+                                   "close",
+                                   "fsync",
+                                   "close"));
+}
+
 TEST(AtomicFile, WhatNeedsNoSyncIsRenamedAllTheSame) {
   const ScratchFolder folder;
   faults = Faults();
@@ -137,8 +188,6 @@ constexpr int Faults::*kSteps[] = {&Faults::write_error,
                                    &Faults::fsync_error,
                                    &Faults::close_error,
                                    &Faults::rename_error};
-
-RetryRules Quick() { return {3, std::chrono::milliseconds(1), 1}; }
 
 TEST(AtomicFile, ErrorsThatPassAreRetriedAndTold) {
   const ScratchFolder folder;
