@@ -6,6 +6,7 @@
 #include "colmap_plugin/tool/parse_options.h"
 #include "colmap_plugin/tool/run_summary.h"
 #include "src/base/error.h"
+#include "src/base/retries.h"
 
 #include <cerrno>
 #include <exception>
@@ -30,12 +31,16 @@ std::string ListOf(const std::vector<std::string>& names) {
                      names.size() - kMaxNames);
 }
 
+LogSink LogTo(ProgressLine* progress) {
+  return [progress](LogLevel level, const std::string& message) {
+    progress->Log(level, NameOptions(message));
+  };
+}
+
 int RunAndReport(const ControllerOptions& options,
                  const ToolEnvironment& tool,
                  ProgressLine* progress) {
-  const LogSink log = [progress](LogLevel level, const std::string& message) {
-    progress->Log(level, NameOptions(message));
-  };
+  const LogSink log = LogTo(progress);
   const RunSummary summary = tool.run_stereo(
       options,
       log,
@@ -64,6 +69,7 @@ int Guarded(const ToolEnvironment& tool,
             const std::function<int(ProgressLine*)>& work) {
   ProgressLine progress(
       tool.out, tool.err, tool.terminal, tool.columns, tool.clock);
+  const RetryScope retries(LogTo(&progress), tool.cancel);
   const auto fail = [&progress](ErrorCode code, const std::string& message) {
     progress.Close();
     progress.Log(LogLevel::kError, message);
@@ -121,9 +127,7 @@ int RunCommand(const Command& command,
     const CommandCall call = {
         parsed.run.options.controller,
         parsed.own,
-        [progress](LogLevel level, const std::string& message) {
-          progress->Log(level, NameOptions(message));
-        },
+        LogTo(progress),
         [&tool](const std::string& text) { return Print(text, tool); },
         tool.cancel};
     return tool.commands.at(command.name)(call);

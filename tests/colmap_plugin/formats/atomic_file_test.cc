@@ -13,6 +13,7 @@
 #include <vector>
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -26,6 +27,7 @@ struct Faults {
   int fsync_error = 0;
   int close_error = 0;
   int rename_error = 0;
+  int stat_error = 0;
   int num_interrupts = 0;       // writes and syncs that fail with EINTR first
   int num_failures = INT_MAX;   // after so many every call succeeds
   size_t max_write = SIZE_MAX;  // short writes
@@ -75,6 +77,11 @@ int rename(const char* from, const char* to) noexcept {
   if (Intercept("rename", faults.rename_error)) return -1;
   return static_cast<int>(
       syscall(SYS_renameat2, AT_FDCWD, from, AT_FDCWD, to, 0));
+}
+
+int stat(const char* path, struct stat* status) noexcept {
+  if (faults.stat_error != 0 && Intercept("stat", faults.stat_error)) return -1;
+  return static_cast<int>(syscall(SYS_newfstatat, AT_FDCWD, path, status, 0));
 }
 
 }  // extern "C"
@@ -260,6 +267,21 @@ TEST(AtomicFile, ErrorsThatStayEndTheTries) {
     EXPECT_EQ(ReadFile(folder / "f"), "old");
     EXPECT_EQ(folder.CountFiles(), 1u);
   }
+}
+
+TEST(StateOf, AFileWhoseDiskDoesNotAnswerIsNotAbsent) {
+  const ScratchFolder folder;
+  WriteFile(folder / "f", "1");
+  const RetryScope scope(nullptr, nullptr, Quick());
+  faults = Faults();
+  faults.stat_error = EIO;
+  faults.recording = true;
+  ExpectError(ErrorCode::kBadInput, "f", [&] { StateOf(folder / "f"); });
+  ExpectError(ErrorCode::kBadInput, "f", [&] { IsRegularFile(folder / "f"); });
+  faults.stat_error = ENOENT;
+  EXPECT_FALSE(StateOf(folder / "f"));
+  EXPECT_FALSE(IsRegularFile(folder / "f"));
+  faults.recording = false;
 }
 
 TEST(AtomicFile, AnInterruptEndsTheTries) {
