@@ -23,6 +23,15 @@ int SyncFile(int fd) {
   return fsync(fd);
 }
 
+int MoveDescriptor(int from, int to) {
+  int result = dup2(from, to);
+  if (result >= 0) result = fcntl(to, F_SETFD, FD_CLOEXEC);
+  const int error = errno;
+  close(from);
+  errno = error;
+  return result < 0 ? -1 : 0;
+}
+
 bool IsOnLocalFileSystem(int fd) {
   struct statfs status = {};
   if (fstatfs(fd, &status) != 0) return false;

@@ -196,6 +196,12 @@ int futimens(int fd, const void*) {
 
 int SyncFile(int fd) { return FlushFileBuffers(HandleOf(fd)) ? 0 : Fail(); }
 
+int MoveDescriptor(int from, int to) {
+  const int result = _dup2(from, to);
+  _close(from);
+  return result;
+}
+
 bool IsOnLocalFileSystem(int fd) {
   FILE_REMOTE_PROTOCOL_INFO remote = {};
   return !GetFileInformationByHandleEx(

@@ -39,6 +39,19 @@ TEST_F(Files, AreWrittenAndReadAtPlaces) {
   EXPECT_EQ(ReadFile(folder_ / "a").size(), 15u);
 }
 
+TEST_F(Files, ADescriptorTakesThePlaceOfAnother) {
+  WriteFile(folder_ / "a", "a");
+  WriteFile(folder_ / "b", "b");
+  const int a = open((folder_ / "a").c_str(), O_RDONLY);
+  const int b = open((folder_ / "b").c_str(), O_RDONLY);
+  ASSERT_EQ(MoveDescriptor(b, a), 0);
+  char byte = 0;
+  EXPECT_EQ(pread(a, &byte, 1, 0), 1);
+  EXPECT_EQ(byte, 'b');
+  EXPECT_EQ(pread(b, &byte, 1, 0), -1);
+  close(a);
+}
+
 TEST_F(Files, AreCreatedOnce) {
   const int fd = Create("a");
   ASSERT_GE(fd, 0);
