@@ -59,7 +59,8 @@ DepthRanges::DepthRanges(const Workspace& workspace,
                          const TrackIndex& tracks,
                          double given_min,
                          double given_max,
-                         const CancelToken& cancel) {
+                         const CancelToken& cancel)
+    : seen_(workspace), estimator_(std::make_unique<RangeEstimator>(seen_)) {
   ReadTracks(workspace, tracks, cancel);
   if (given_min < 0 || given_max < 0) return;
   given_ =
@@ -107,7 +108,6 @@ void DepthRanges::ReadTracks(const Workspace& workspace,
     const std::lock_guard<std::mutex> lock(mutex);
     too_few_.emplace(image, depths);
   });
-  estimator_ = std::make_unique<RangeEstimator>(workspace);
 }
 
 std::optional<DepthRange> DepthRanges::ForImage(int image) const {

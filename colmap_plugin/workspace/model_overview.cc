@@ -7,7 +7,7 @@ ModelOverview::ModelOverview(const Workspace& workspace,
                              double depth_max,
                              const CancelToken& cancel)
     : tracks_(workspace, cancel),
-      automatic_(workspace, tracks_, cancel),
-      ranges_(workspace, tracks_, depth_min, depth_max, cancel) {}
+      ranges_(workspace, tracks_, depth_min, depth_max, cancel),
+      automatic_(workspace, tracks_, ranges_.seen(), cancel) {}
 
 }  // namespace hpm
