@@ -222,12 +222,14 @@ RunSummary PatchMatchController::Run() {
                   resources.workers.get(),
                   Events(workspace, problems, plan, stop, &statistics));
       is_done = true;
-    } catch (const UnreadableImage& error) {
-      // Planned anew without it, so that all maps are those of a run that knew
-      // it from the start; what is made already and does not need it stays.
+    } catch (const UnreadableImages& error) {
+      // Planned anew without them, so that all maps are those of a run that
+      // knew them from the start; what is made already and needs none stays.
       lock.ThrowIfLost();
-      log_(LogLevel::kWarning, error.what());
-      workspace.DropPicture(error.image());
+      for (const auto& [image, reason] : error.reasons()) {
+        log_(LogLevel::kWarning, reason);
+        workspace.DropPicture(image);
+      }
       // The references are the same: those that cannot be computed stay as
       // problems.
       problems =
