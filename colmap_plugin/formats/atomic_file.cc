@@ -80,7 +80,7 @@ int64_t OwnerOfTemporary(const std::string& name, const std::string& infix) {
 AtomicFile::AtomicFile(const fs::path& path, Durability durability)
     : path_(path), durability_(durability) {
   const std::error_code error = MakeFolder(ParentFolder(path));
-  if (error) Throw("create the folder of", error.value());
+  if (error) Throw("create the folder of", ErrnoOf(error));
   const fs::path temporary = TemporaryBeside(path);
   fd_ = OpenTemporary(temporary);
   if (fd_ < 0) Throw("create a temporary file beside", errno);

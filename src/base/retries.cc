@@ -62,7 +62,7 @@ bool Ask(const std::filesystem::path& path, const Question& question) {
     last = error;
     return is_so;
   });
-  ThrowIfTransient(last.value(), path);
+  ThrowIfTransient(ErrnoOf(last), path);
   return answer;
 }
 

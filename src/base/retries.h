@@ -93,7 +93,7 @@ auto RetryFileSystem(const std::filesystem::path& path, const Call& call) {
   while (true) {
     std::error_code error;
     const auto result = call(error);
-    if (!error || !retries.Again(error.value())) return result;
+    if (!error || !retries.Again(ErrnoOf(error))) return result;
   }
 }
 

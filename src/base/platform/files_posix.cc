@@ -1,3 +1,4 @@
+#include "src/base/platform/errors.h"
 #include "src/base/platform/files.h"
 
 #include <algorithm>
@@ -12,6 +13,8 @@
 #endif
 
 namespace hpm {
+
+int ErrnoOf(const std::error_code& error) { return error.value(); }
 
 int SyncFile(int fd) {
 #ifdef F_FULLFSYNC

@@ -1,3 +1,4 @@
+#include "src/base/platform/errors.h"
 #include "src/base/platform/files.h"
 
 #include <cerrno>
@@ -106,6 +107,12 @@ int LookAt(const wchar_t* path, DWORD extra_flags, struct stat* status) {
 }
 
 }  // namespace
+
+int ErrnoOf(const std::error_code& error) {
+  if (!error || error.category() != std::system_category())
+    return error.value();
+  return ErrnoOf(static_cast<DWORD>(error.value()));
+}
 
 int open(const wchar_t* path, int flags, int) {
   const int how = flags & (_O_RDONLY | _O_WRONLY | _O_RDWR);

@@ -1,5 +1,6 @@
 #include "src/base/platform/files.h"
 
+#include "src/base/platform/errors.h"
 #include "tests/base/scratch_folder.h"
 
 #include <cerrno>
@@ -50,6 +51,16 @@ TEST_F(Files, ADescriptorTakesThePlaceOfAnother) {
   EXPECT_EQ(byte, 'b');
   EXPECT_EQ(pread(b, &byte, 1, 0), -1);
   close(a);
+}
+
+// As std::filesystem says it: on Windows in numbers of its own, of which the 5
+// of a missing permission would be EIO.
+TEST_F(Files, ErrorsHaveTheNumbersOfErrno) {
+  std::error_code error;
+  EXPECT_FALSE(
+      std::filesystem::create_directory(folder_ / "none" / "a", error));
+  EXPECT_EQ(ErrnoOf(error), ENOENT);
+  EXPECT_EQ(ErrnoOf(std::error_code()), 0);
 }
 
 TEST_F(Files, AreCreatedOnce) {
