@@ -296,10 +296,8 @@ bool StagePlan::AreIntact(int s, int image, Stamp* stamp, Found* found) const {
     // again.
     RemoveStamp(folder, name, NameOf(s, image));
   } else if (has_new_time || (may_be_lost && !since->empty())) {
-    // Copies are not synced; what was read after another start of the machine
-    // lies on its disk.
-    since.reset();
-    if (has_new_time) since = UnsyncedSince(folder);
+    // These may be copies, of which nobody knows whether they were synced.
+    since = UnsyncedSince(folder);
     try {
       WriteStamp(folder, name, NameOf(s, image), *stamp);
     } catch (const Error&) {
