@@ -88,7 +88,7 @@ void HpmPatchMatchController::RunColmapsOwn() {
 
 void HpmPatchMatchController::RunHpmMvs() {
   hpm::CancelToken cancel;
-  const auto progress = [this](const hpm::ProgressEvent&) {
+  const auto progress = [&](const hpm::ProgressEvent&) {
 #ifndef HPM_COLMAP_HAS_BASE_CONTROLLER
     BlockIfPaused();
 #endif
@@ -109,10 +109,10 @@ void HpmPatchMatchController::RunHpmMvs() {
     // tells no progress.
     std::future<hpm::RunSummary> run =
         std::async(std::launch::async, [&] { return controller.Run(); });
-    while (run.wait_for(std::chrono::milliseconds(50)) !=
-           std::future_status::ready) {
+    do {
       if (IsStopAskedFor()) cancel.Cancel();
-    }
+    } while (run.wait_for(std::chrono::milliseconds(50)) !=
+             std::future_status::ready);
     summary = run.get();
   } catch (const hpm::Error& error) {
     if (error.code() == hpm::ErrorCode::kInterrupted) return;
