@@ -6,8 +6,8 @@
 #             source is to be given to its CMake (patches/README.md)
 #   --arm64   also what cross-compiles for ARM and runs it, for tests/arm; exit code 77
 #             when the arm64 libraries cannot be had
-#   --release also what packages, documents and lint are made and checked with
-#             and a compiler for Windows; not libc++-dev, which displaces a package of COLMAP's
+#   --release also what documents are made and packages, spelling and scripts are checked
+#             with and a compiler for Windows; not libc++-dev, which displaces a package of COLMAP's
 #   --browser also Chromium, in which a test opens the report of a run
 #   --check   installs nothing; exit code 1 when something is missing
 set -euo pipefail
@@ -31,6 +31,8 @@ PACKAGES=(
   libgtest-dev libgmock-dev libbenchmark-dev
   clang clang-format clang-tidy
   python3 python3-venv
+  # what cpack makes the Debian package with
+  dpkg-dev file
   # the program whose step we replace; it also runs in the tests
   colmap
 )
@@ -43,7 +45,7 @@ COLMAP_PACKAGES=(
 )
 
 RELEASE_PACKAGES=(
-  dpkg-dev file lintian
+  lintian
   doxygen
   codespell shellcheck
   g++-mingw-w64-x86-64-posix

@@ -265,12 +265,14 @@ bool PatchMatchController::ComputeStages(const RunState& run) const {
                 run.resources.workers.get(),
                 Events(run));
     return true;
-  } catch (const UnreadableImage& error) {
-    // Planned anew without it, so that all maps are those of a run that knew
-    // it from the start; what is made already and does not need it stays.
+  } catch (const UnreadableImages& error) {
+    // Planned anew without them, so that all maps are those of a run that knew
+    // them from the start; what is made already and needs none stays.
     run.lock.ThrowIfLost();
-    log_(LogLevel::kWarning, error.what());
-    run.workspace.DropPicture(error.image());
+    for (const auto& [image, reason] : error.reasons()) {
+      log_(LogLevel::kWarning, reason);
+      run.workspace.DropPicture(image);
+    }
     // The references are the same: those that cannot be computed stay as
     // problems.
     run.problems = ReadProblems(

@@ -4,9 +4,9 @@
 #include "colmap_plugin/controller/ray_convention.h"
 #include "colmap_plugin/formats/consistency_graph.h"
 #include "colmap_plugin/formats/map_file.h"
+#include "colmap_plugin/workspace/file_system.h"
 #include "colmap_plugin/workspace/source_level.h"
 #include "colmap_plugin/workspace/stamp.h"
-#include "src/base/platform/processes.h"
 #include "src/base/retries.h"
 #include "src/engine/phase_timer.h"
 
@@ -166,7 +166,7 @@ void FileMapStore::WriteMaps(int stage,
   const bool is_public = plan_.IsPublic(stage, problems_[problem].ref_image);
   const Durability durability =
       is_public ? Durability::kPowerCut : Durability::kProcess;
-  if (!is_public) stamp->unsynced_since = BootId();
+  if (!is_public) stamp->unsynced_since = UnsyncedSince(workspace_.StatePath());
   MapWriter normal(files.normal, {map.width, map.height, 3}, durability);
   MapWriter depth(files.depth, {map.width, map.height, 1}, durability);
   const WrittenDepths written =

@@ -21,8 +21,8 @@ void ImageContents::Read(const std::vector<int>& images,
   tbb::parallel_for(size_t{0}, unknown.size(), [&](size_t i) {
     Content* content = &contents_[unknown[i]];
     const auto& path = workspace_->ImagePath(unknown[i]);
-    content->state = StateOf(path);
     try {
+      content->state = StateOf(path);
       content->hash = HashFile(path, cancel);
       const auto& mask = workspace_->MaskPath(unknown[i]);
       content->mask_state = StateOf(mask);

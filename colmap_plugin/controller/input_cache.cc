@@ -48,14 +48,22 @@ std::vector<std::shared_ptr<const GrayImage>> InputCache::Images(
     tbb::parallel_for(size_t{0}, requests.size(), [&](size_t i) {
       try {
         get(i, IfLoading::kSkip);
-      } catch (const UnreadableImage&) {
-        // Thrown below, where it does not depend on the threads which is first.
+      } catch (const UnreadableImages&) {
+        // Collected below, with those that others are loading.
       }
     });
   });
+  UnreadableImages::Reasons unreadable;
   for (size_t i = 0; i < requests.size(); ++i) {
-    if (images[i] == nullptr) get(i, IfLoading::kWait);
+    if (images[i] != nullptr || unreadable.count(requests[i].image) > 0)
+      continue;
+    try {
+      get(i, IfLoading::kWait);
+    } catch (const UnreadableImages& error) {
+      unreadable.insert(error.reasons().begin(), error.reasons().end());
+    }
   }
+  if (!unreadable.empty()) throw UnreadableImages(std::move(unreadable));
   return images;
 }
 
@@ -154,7 +162,7 @@ std::shared_ptr<const GrayImage> InputCache::Image(int image,
                         camera.height,
                         workspace_.Decoding(image)));
     } catch (const Error& error) {
-      throw UnreadableImage(image, error.what());
+      throw UnreadableImages({{image, error.what()}});
     }
   };
   return std::static_pointer_cast<const GrayImage>(

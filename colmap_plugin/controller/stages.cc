@@ -3,6 +3,7 @@
 #include "colmap_plugin/controller/stage_fingerprint.h"
 #include "colmap_plugin/formats/content_hash.h"
 #include "colmap_plugin/formats/map_file.h"
+#include "colmap_plugin/workspace/file_system.h"
 #include "colmap_plugin/workspace/fingerprint.h"
 #include "src/base/error.h"
 #include "src/base/platform/processes.h"
@@ -21,6 +22,7 @@ constexpr const char* kLevelPrefix = "level_";
 constexpr const char* kGeometricPrefix = "geometric_";
 constexpr const char* kSourcePrefix = "source_";
 constexpr const char* kPhotometric = "photometric";
+constexpr const char* kGeometric = "geometric";
 
 bool StartsWith(const std::string& text, const char* prefix) {
   return text.rfind(prefix, 0) == 0;
@@ -62,7 +64,7 @@ std::vector<Stage> MakeStages(const Schedule& schedule, bool keep_photometric) {
   Stage& last = stages.back();
   last.is_public = true;
   last.is_final = true;
-  if (last.spec.geometric) last.name = "geometric";
+  if (last.spec.geometric) last.name = kGeometric;
   return stages;
 }
 
@@ -275,9 +277,8 @@ bool StagePlan::AreIntact(int s, int image, Stamp* stamp, Found* found) const {
   std::map<std::string, std::filesystem::path> wanted = {
       {"depth", files.depth}, {"normal", files.normal}};
   if (WritesGraph(s, image)) wanted["graph"] = files.graph;
-  const bool may_be_lost =
-      stamp->unsynced_since &&
-      (stamp->unsynced_since->empty() || *stamp->unsynced_since != BootId());
+  std::optional<std::string>& since = stamp->unsynced_since;
+  const bool may_be_lost = since && (since->empty() || *since != BootId());
   bool is_absent = false, has_new_time = false;
   for (const auto& [kind, path] : wanted) {
     const std::optional<FileState> state = StateOf(path);
@@ -305,7 +306,9 @@ bool StagePlan::AreIntact(int s, int image, Stamp* stamp, Found* found) const {
     // Nobody may take these maps for good ones, even if they cannot be made
     // again.
     RemoveStamp(folder, name, NameOf(s, image));
-  } else if (has_new_time) {
+  } else if (has_new_time || (may_be_lost && !since->empty())) {
+    // These may be copies, of which nobody knows whether they were synced.
+    since = UnsyncedSince(folder);
     try {
       WriteStamp(folder, name, NameOf(s, image), *stamp);
     } catch (const Error&) {
@@ -328,6 +331,10 @@ void RemoveInnerMaps(const Workspace& workspace) {
       if (StartsWith(name, prefix)) folders.push_back(it->path());
     }
   }
+  if (folders.empty()) return;
+  // A power cut must not take what vouches for the maps that were made of them.
+  for (const char* stage : {kPhotometric, kGeometric})
+    SyncStamps(workspace.StatePath(), stage);
   for (const std::filesystem::path& folder : folders)
     std::filesystem::remove_all(folder, error);
 }

@@ -149,7 +149,8 @@ class StagePlan {
   bool replaces_foreign_maps_ = true;  // until a plan finds none
 };
 
-// Removes the maps between stages, of any run: once all was made that can be,
+// Removes the maps between stages, of any run, once the stamps of the others
+// are synced: once all was made that can be,
 // they are of no use. A later run that lacks some result makes those it needs
 // again, to the same bytes.
 void RemoveInnerMaps(const Workspace& workspace);

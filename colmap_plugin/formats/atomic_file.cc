@@ -80,7 +80,7 @@ int64_t OwnerOfTemporary(const std::string& name, const std::string& infix) {
 AtomicFile::AtomicFile(const fs::path& path, Durability durability)
     : path_(path), durability_(durability) {
   const std::error_code error = MakeFolder(ParentFolder(path));
-  if (error) Throw("create the folder of", error.value());
+  if (error) Throw("create the folder of", ErrnoOf(error));
   const fs::path temporary = TemporaryBeside(path);
   fd_ = OpenTemporary(temporary);
   if (fd_ < 0) Throw("create a temporary file beside", errno);
@@ -124,12 +124,15 @@ void AtomicFile::WriteAll(const void* data,
 }
 
 void AtomicFile::Flush() {
-  if (durability_ == Durability::kProcess) return;
+  if (durability_ == Durability::kProcess || num_synced_ == num_written_)
+    return;
+  const uint64_t num_bytes = num_written_;
   int result;
   do {
     result = SyncFile(fd_);
   } while (result != 0 && errno == EINTR);
   if (result != 0) ThrowUnwritten(errno);
+  num_synced_ = num_bytes;
 }
 
 FileState AtomicFile::Commit() {
@@ -145,20 +148,28 @@ FileState AtomicFile::Commit() {
   temporary_.clear();
   if (durability_ == Durability::kProcess) return *state;
 
-  const fs::path folder_path = ParentFolder(path_);
-  const int folder = RetryCall(folder_path, [&] {
-    return open(folder_path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  });
-  if (folder < 0) return *state;  // a folder that may be written but not listed
-  const int result = RetryCall(folder_path, [&] { return SyncFile(folder); });
-  const int error = result == 0 ? 0 : errno;
-  close(folder);
-  // Some network file systems cannot sync a folder: then rename is all there
-  // is.
-  if (error != 0 && error != EINVAL && error != ENOTSUP) {
-    Throw("sync the folder of", error);
-  }
+  SyncFolder();
   return *state;
+}
+
+void AtomicFile::SyncFolder() const {
+  const fs::path path = ParentFolder(path_);
+  bool is_open = false;
+  // A stale handle stays so: each try opens the folder anew.
+  const int result = RetryCall(path, [&] {
+    const int folder = open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    is_open = folder >= 0;
+    if (!is_open) return -1;
+    const int once = SyncFile(folder);
+    const int error = errno;
+    close(folder);
+    errno = error;
+    return once;
+  });
+  // A folder may be written but not listed, and some network file systems
+  // cannot sync one: then rename is all there is.
+  if (result != 0 && is_open && errno != EINVAL && errno != ENOTSUP)
+    Throw("sync the folder of", errno);
 }
 
 bool AtomicFile::Rename(const FileState& state) const {

@@ -58,12 +58,14 @@ class AtomicFile {
   [[noreturn]] void Throw(const char* action, int error) const;
   [[noreturn]] void ThrowUnwritten(int error) const;
   bool Rename(const FileState& state) const;
+  void SyncFolder() const;
 
   std::filesystem::path path_;
   Durability durability_;
   std::filesystem::path temporary_;  // empty once it was renamed
   int fd_ = -1;
   std::atomic<uint64_t> num_written_{0};
+  uint64_t num_synced_ = UINT64_MAX;  // of these; not yet even the empty file
 };
 
 // Retries what passes.

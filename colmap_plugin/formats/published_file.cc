@@ -3,6 +3,8 @@
 #include "src/base/platform/files.h"
 #include "src/base/retries.h"
 
+#include <cerrno>
+
 namespace hpm {
 namespace {
 
@@ -18,6 +20,7 @@ std::optional<FileState> StateOf(const std::filesystem::path& path) {
   struct stat status = {};
   const int result =
       RetryCall(path, [&] { return stat(path.c_str(), &status); });
+  if (result != 0) ThrowIfTransient(errno, path);
   return StateFrom(result, status);
 }
 

@@ -19,7 +19,8 @@ struct FileState {
   bool operator!=(const FileState& other) const { return !(*this == other); }
 };
 
-// Nothing if there is no such file.
+// Nothing if there is no such file. Throws Error(kBadInput) where the disk does
+// not answer.
 std::optional<FileState> StateOf(const std::filesystem::path& path);
 // Of an open file.
 std::optional<FileState> StateOf(int fd);

@@ -5,6 +5,7 @@
 #include "src/base/error.h"
 
 #include <chrono>
+#include <future>
 #include <iostream>
 #include <stdexcept>
 #include <thread>
@@ -87,11 +88,10 @@ void HpmPatchMatchController::RunColmapsOwn() {
 
 void HpmPatchMatchController::RunHpmMvs() {
   hpm::CancelToken cancel;
-  const auto progress = [this, &cancel](const hpm::ProgressEvent&) {
+  const auto progress = [&](const hpm::ProgressEvent&) {
 #ifndef HPM_COLMAP_HAS_BASE_CONTROLLER
     BlockIfPaused();
 #endif
-    if (IsStopAskedFor()) cancel.Cancel();
   };
   hpm::RunSummary summary;
   try {
@@ -105,7 +105,15 @@ void HpmPatchMatchController::RunHpmMvs() {
         Log,
         progress,
         cancel);
-    summary = controller.Run();
+    // Beside this thread, which asks whether to stop all the while: planning
+    // tells no progress.
+    std::future<hpm::RunSummary> run =
+        std::async(std::launch::async, [&] { return controller.Run(); });
+    do {
+      if (IsStopAskedFor()) cancel.Cancel();
+    } while (run.wait_for(std::chrono::milliseconds(50)) !=
+             std::future_status::ready);
+    summary = run.get();
   } catch (const hpm::Error& error) {
     if (error.code() == hpm::ErrorCode::kInterrupted) return;
     Log(hpm::LogLevel::kError, error.what());

@@ -7,6 +7,7 @@
 #include "colmap_plugin/tool/parse_options.h"
 #include "colmap_plugin/tool/run_summary.h"
 #include "src/base/error.h"
+#include "src/base/retries.h"
 
 #include <cerrno>
 #include <exception>
@@ -31,12 +32,16 @@ std::string ListOf(const std::vector<std::string>& names) {
                      names.size() - kMaxNames);
 }
 
+LogSink LogTo(ProgressLine* progress) {
+  return [progress](LogLevel level, const std::string& message) {
+    progress->Log(level, NameOptions(message));
+  };
+}
+
 int RunAndReport(const ControllerOptions& options,
                  const ToolEnvironment& tool,
                  ProgressLine* progress) {
-  const LogSink log = [progress](LogLevel level, const std::string& message) {
-    progress->Log(level, NameOptions(message));
-  };
+  const LogSink log = LogTo(progress);
   const RunSummary summary = tool.run_stereo(
       options,
       log,
@@ -69,6 +74,7 @@ int Guarded(const ToolEnvironment& tool,
                         tool.columns,
                         tool.clock,
                         parsed.options.controller.hpm.log_format == "json");
+  const RetryScope retries(LogTo(&progress), tool.cancel);
   const auto fail = [&progress](ErrorCode code, const std::string& message) {
     progress.Close();
     progress.Log(LogLevel::kError, message);
@@ -127,9 +133,7 @@ int RunCommand(const Command& command,
     const CommandCall call = {
         parsed.run.options.controller,
         parsed.own,
-        [progress](LogLevel level, const std::string& message) {
-          progress->Log(level, NameOptions(message));
-        },
+        LogTo(progress),
         [&tool](const std::string& text) { return Print(text, tool); },
         tool.cancel};
     return tool.commands.at(command.name)(call);

@@ -6,10 +6,11 @@ namespace hpm {
 
 AutomaticSources::AutomaticSources(const Workspace& workspace,
                                    const TrackIndex& tracks,
+                                   const SeenPoints& seen,
                                    const CancelToken& cancel)
     : workspace_(workspace),
       selector_(workspace, tracks),
-      overlap_(workspace),
+      overlap_(seen),
       cancel_(cancel) {
   for (int i = 0; i < workspace.num_images(); ++i) {
     cancel.ThrowIfCancelled();

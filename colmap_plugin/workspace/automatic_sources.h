@@ -20,6 +20,7 @@ class AutomaticSources {
   // Keeps references to all.
   AutomaticSources(const Workspace& workspace,
                    const TrackIndex& tracks,
+                   const SeenPoints& seen,
                    const CancelToken& cancel);
 
   // Best first. All that share points under at least min_angle (degrees), and

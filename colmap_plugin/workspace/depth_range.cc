@@ -61,7 +61,9 @@ DepthRanges::DepthRanges(const Workspace& workspace,
                          double given_max,
                          std::map<int, DepthRange> given_for,
                          const CancelToken& cancel)
-    : given_for_(std::move(given_for)) {
+    : given_for_(std::move(given_for)),
+      seen_(workspace),
+      estimator_(std::make_unique<RangeEstimator>(seen_)) {
   for (auto& [image, range] : given_for_) range = Widened(range);
   ReadTracks(workspace, tracks, cancel);
   if (given_min < 0 || given_max < 0) return;
@@ -110,7 +112,6 @@ void DepthRanges::ReadTracks(const Workspace& workspace,
     const std::lock_guard<std::mutex> lock(mutex);
     too_few_.emplace(image, depths);
   });
-  estimator_ = std::make_unique<RangeEstimator>(workspace);
 }
 
 std::optional<DepthRange> DepthRanges::ForImage(int image) const {

@@ -7,6 +7,7 @@
 // wider than the given range, and what lies outside is dropped in the end.
 #pragma once
 
+#include "colmap_plugin/workspace/seen_points.h"
 #include "colmap_plugin/workspace/track_index.h"
 #include "colmap_plugin/workspace/workspace.h"
 #include "src/base/cancel.h"
@@ -73,6 +74,9 @@ class DepthRanges {
   // A factor, at both ends of a given range.
   static constexpr float kSearchedBeyond = 4;
 
+  // What the estimates go by, for others that ask geometry instead of tracks.
+  const SeenPoints& seen() const { return seen_; }
+
  private:
   void ReadTracks(const Workspace& workspace,
                   const TrackIndex& tracks,
@@ -91,7 +95,8 @@ class DepthRanges {
   std::vector<std::optional<DepthRange>> automatic_;
   // Depths of the points of tracks, of images where they are not enough.
   std::map<int, std::vector<float>> too_few_;
-  std::unique_ptr<RangeEstimator> estimator_;
+  const SeenPoints seen_;
+  const std::unique_ptr<const RangeEstimator> estimator_;
 };
 
 }  // namespace hpm

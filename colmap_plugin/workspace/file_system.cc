@@ -3,6 +3,7 @@
 #include "colmap_plugin/formats/atomic_file.h"
 #include "src/base/error.h"
 #include "src/base/platform/files.h"
+#include "src/base/platform/processes.h"
 
 namespace hpm {
 
@@ -19,6 +20,14 @@ std::optional<int64_t> FileSystemTime(const std::filesystem::path& folder) {
   unlink(file.c_str());
   if (!known) return std::nullopt;
   return ModifiedNanoseconds(status);
+}
+
+std::string UnsyncedSince(const std::filesystem::path& folder) {
+  const int fd = open(folder.c_str(), O_RDONLY | O_CLOEXEC);
+  if (fd < 0) return "";
+  const bool is_local = IsOnLocalFileSystem(fd);
+  close(fd);
+  return is_local ? BootId() : "";
 }
 
 }  // namespace hpm

@@ -42,6 +42,7 @@ class ImageFault {
     if (num_++ == 0) first_ = example;
   }
   int num() const { return num_; }
+  const std::string& first() const { return first_; }
   // "3 of 8 images <what>, the first: <example>"
   std::string Line(int num_images, const std::string& what) const;
 

@@ -9,12 +9,12 @@ ModelOverview::ModelOverview(const Workspace& workspace,
                              const ProblemOptions& options,
                              const CancelToken& cancel)
     : tracks_(workspace, cancel),
-      automatic_(workspace, tracks_, cancel),
       ranges_(workspace,
               tracks_,
               options.depth_min,
               options.depth_max,
               ReadGivenRanges(workspace, options.depth_ranges),
-              cancel) {}
+              cancel),
+      automatic_(workspace, tracks_, ranges_.seen(), cancel) {}
 
 }  // namespace hpm

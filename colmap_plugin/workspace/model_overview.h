@@ -28,8 +28,8 @@ class ModelOverview {
 
  private:
   const TrackIndex tracks_;
-  const AutomaticSources automatic_;
   const DepthRanges ranges_;
+  const AutomaticSources automatic_;
 };
 
 }  // namespace hpm

@@ -18,8 +18,8 @@ constexpr double kMinShare = 0.05;
 
 }  // namespace
 
-OverlapSelector::OverlapSelector(const Workspace& workspace)
-    : views_(workspace), seen_(workspace, views_) {}
+OverlapSelector::OverlapSelector(const SeenPoints& seen)
+    : seen_(seen), views_(seen.views()) {}
 
 std::vector<int> OverlapSelector::Select(
     int ref_image,

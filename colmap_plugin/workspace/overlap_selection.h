@@ -11,7 +11,8 @@ namespace hpm {
 
 class OverlapSelector {
  public:
-  explicit OverlapSelector(const Workspace& workspace);
+  // Keeps a reference.
+  explicit OverlapSelector(const SeenPoints& seen);
 
   // Best first, of `candidates`, which ascend: the images into which most of
   // the reference's points project, weighted by their angles; three quarters of
@@ -27,8 +28,8 @@ class OverlapSelector {
   std::vector<Eigen::Vector3d> PointsOf(int image,
                                         const DepthRange& range) const;
 
-  const ModelViews views_;
-  const SeenPoints seen_;
+  const SeenPoints& seen_;
+  const ModelViews& views_;
 };
 
 }  // namespace hpm

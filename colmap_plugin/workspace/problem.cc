@@ -3,6 +3,7 @@
 #include "colmap_plugin/formats/image_name.h"
 #include "colmap_plugin/formats/patch_match_cfg.h"
 #include "colmap_plugin/workspace/cfg_check.h"
+#include "colmap_plugin/workspace/image_files.h"
 #include "colmap_plugin/workspace/model_overview.h"
 #include "colmap_plugin/workspace/planning_progress.h"
 #include "src/base/error.h"
@@ -19,21 +20,11 @@
 namespace hpm {
 namespace {
 
-// Images that share a fault, for one line about all of them.
-struct Affected {
-  int count = 0;
-  std::string first;
-
-  void Add(const std::string& name) {
-    if (count++ == 0) first = name;
-  }
-};
-
 // "reference image a.jpg" or "3 reference images (the first: a.jpg)".
-std::string Describe(const Affected& images) {
-  if (images.count == 1) return "reference image " + images.first;
+std::string Describe(const ImageFault& images) {
+  if (images.num() == 1) return "reference image " + images.first();
   return fmt::format(
-      "{} reference images (the first: {})", images.count, images.first);
+      "{} reference images (the first: {})", images.num(), images.first());
 }
 
 class ProblemReader {
@@ -154,19 +145,19 @@ class ProblemReader {
 
   // What the reading found out about the images, one line for each fault.
   void Report() const {
-    if (without_sources_.count > 0) {
+    if (without_sources_.num() > 0) {
       Warn("Ignoring {}, because {} no source images.",
            Describe(without_sources_),
-           without_sources_.count == 1 ? "it has" : "they have");
+           without_sources_.num() == 1 ? "it has" : "they have");
     }
-    if (without_range_.count > 0) {
+    if (without_range_.num() > 0) {
       Warn(
           "Ignoring {}: no sparse point and no other view tells the depth "
           "range; set both --PatchMatchStereo.depth_min and "
           "--PatchMatchStereo.depth_max.",
           Describe(without_range_));
     }
-    if (estimated_.count > 0) {
+    if (estimated_.num() > 0) {
       Warn(
           "The depth range of {} is estimated, from the places of cameras and "
           "sparse points: fewer than {} points have a track there. Set both "
@@ -175,14 +166,14 @@ class ProblemReader {
           Describe(estimated_),
           kEnoughPoints);
     }
-    if (unshared_.count > 0) {
+    if (unshared_.num() > 0) {
       Warn(
           "Fusion will find nothing in {}: colmap stereo_fusion joins only "
           "images that share tracks of sparse points, and {}. Triangulate "
           "points with the known poses before (colmap feature_extractor, "
           "exhaustive_matcher, point_triangulator), then undistort again.",
           Describe(unshared_),
-          unshared_.count == 1 ? "it shares none" : "they share none");
+          unshared_.num() == 1 ? "it shares none" : "they share none");
     }
   }
 
@@ -197,11 +188,11 @@ class ProblemReader {
                               path_.string()));
     }
     std::string remedy = "see the warnings";
-    if (without_sources_.count > 0) {
+    if (without_sources_.num() > 0) {
       remedy =
           "check the poses and the sparse points, or write names of source "
           "images below each reference image, or __all__";
-    } else if (without_range_.count > 0) {
+    } else if (without_range_.num() > 0) {
       remedy =
           "set both --PatchMatchStereo.depth_min and "
           "--PatchMatchStereo.depth_max";
@@ -297,10 +288,10 @@ class ProblemReader {
   const AutomaticSources& automatic_;
   const DepthRanges& ranges_;
   int num_cut_ = 0;
-  Affected without_sources_;
-  Affected without_range_;
-  Affected estimated_;
-  Affected unshared_;
+  ImageFault without_sources_;
+  ImageFault without_range_;
+  ImageFault estimated_;
+  ImageFault unshared_;
 };
 
 }  // namespace

@@ -35,8 +35,8 @@ std::optional<DepthRange> Joined(const std::optional<DepthRange>& a,
 
 }  // namespace
 
-RangeEstimator::RangeEstimator(const Workspace& workspace)
-    : views_(workspace), seen_(workspace, views_) {}
+RangeEstimator::RangeEstimator(const SeenPoints& seen)
+    : seen_(seen), views_(seen.views()) {}
 
 std::optional<DepthRange> RangeEstimator::Estimate(
     int image,

@@ -14,7 +14,8 @@ namespace hpm {
 // May be asked by several threads at once.
 class RangeEstimator {
  public:
-  explicit RangeEstimator(const Workspace& workspace);
+  // Keeps a reference.
+  explicit RangeEstimator(const SeenPoints& seen);
 
   // From the sparse points that project into the image; where these are too
   // few, also from what images of known range may see in front of it; where
@@ -38,8 +39,8 @@ class RangeEstimator {
   double Support(int image, const std::vector<int>& others, double depth) const;
   std::vector<int> SomeOthers(int image) const;
 
-  const ModelViews views_;
-  const SeenPoints seen_;
+  const SeenPoints& seen_;
+  const ModelViews& views_;
   // Of images that were asked for as neighbours.
   mutable std::mutex mutex_;
   mutable std::map<int, std::optional<DepthRange>> seen_ranges_;

@@ -142,7 +142,7 @@ RunLock::RunLock(const fs::path& state_path,
                  const LockRules& rules)
     : path_(state_path / "lock"), stop_(stop), rules_(rules) {
   const std::error_code error = MakeFolder(state_path);
-  if (error) ThrowSystemError(path_, error.value());
+  if (error) ThrowSystemError(path_, ErrnoOf(error));
   const LockOwner self = ThisProcess();
   int attempt = 0;
   Retries retries(path_);

@@ -18,8 +18,7 @@ constexpr size_t kFrontShare = 10;
 
 }  // namespace
 
-SeenPoints::SeenPoints(const Workspace& workspace, const ModelViews& views)
-    : views_(views) {
+SeenPoints::SeenPoints(const Workspace& workspace) : views_(workspace) {
   const SparsePoints& points = workspace.model().points;
   const size_t max_points =
       std::clamp(kMaxProjections / (workspace.model().images.size() + 1),

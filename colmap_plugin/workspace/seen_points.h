@@ -10,8 +10,10 @@ namespace hpm {
 
 class SeenPoints {
  public:
-  // Of big models an even sample is taken. Keeps a reference to `views`.
-  SeenPoints(const Workspace& workspace, const ModelViews& views);
+  // Of big models an even sample is taken.
+  explicit SeenPoints(const Workspace& workspace);
+
+  const ModelViews& views() const { return views_; }
 
   struct SeenPoint {
     Eigen::Vector3d xyz;
@@ -22,7 +24,7 @@ class SeenPoints {
   std::vector<SeenPoint> ForImage(int image) const;
 
  private:
-  const ModelViews& views_;
+  const ModelViews views_;
   std::vector<Eigen::Vector3d> points_;
 };
 

@@ -4,6 +4,7 @@
 #include "colmap_plugin/formats/image_name.h"
 #include "src/base/error.h"
 #include "src/base/input_file.h"
+#include "src/base/platform/files.h"
 
 #include <utility>
 
@@ -36,6 +37,13 @@ std::optional<PublishedFile> FileFrom(const nlohmann::json& json) {
                        checksum->get<std::string>()};
 }
 
+void Sync(const std::filesystem::path& path) {
+  const int fd = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (fd < 0) return;
+  SyncFile(fd);
+  close(fd);
+}
+
 }  // namespace
 
 std::filesystem::path StampPath(const std::filesystem::path& state_path,
@@ -65,6 +73,21 @@ void WriteStamp(const std::filesystem::path& state_path,
       StampPath(state_path, image_name, stage),
       json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace),
       Durability::kProcess);
+}
+
+void SyncStamps(const std::filesystem::path& state_path,
+                const std::string& stage) {
+  const std::filesystem::path folder =
+      StampPath(state_path, "any", stage).parent_path();
+  std::error_code error;
+  std::filesystem::recursive_directory_iterator it(folder, error);
+  for (const std::filesystem::recursive_directory_iterator end;
+       !error && it != end;
+       it.increment(error)) {
+    Sync(it->path());
+  }
+  Sync(folder);
+  Sync(folder.parent_path());
 }
 
 void RemoveStamp(const std::filesystem::path& state_path,

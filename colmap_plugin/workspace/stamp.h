@@ -22,9 +22,9 @@ struct Stamp {
   std::map<std::string, PublishedFile> files;  // "depth", "normal", "graph"
   // An object (or null); its members stand beside the others.
   nlohmann::json statistics = nullptr;
-  // Of maps that were not synced to the disk: the running kernel (BootId()). On
-  // any other, a power cut may lie between, and length and time do not tell
-  // whether the bytes are there.
+  // Of maps that were not synced to the disk: UnsyncedSince() of
+  // file_system.h. On any other kernel, or where it is empty, length and time
+  // do not tell whether the bytes are there.
   std::optional<std::string> unsynced_since;
 };
 
@@ -39,6 +39,11 @@ void WriteStamp(const std::filesystem::path& state_path,
                 const std::string& image_name,
                 const std::string& stage,
                 const Stamp& stamp);
+
+// After it a power cut takes no stamp of the stage any more. Errors are none:
+// what is lost is made again.
+void SyncStamps(const std::filesystem::path& state_path,
+                const std::string& stage);
 
 // Before maps are replaced: from then on they are finished only with a new
 // stamp.

@@ -44,6 +44,7 @@ InputFile::InputFile(const std::filesystem::path& path) : path_(path) {
         "{} is not a regular file; give the path of a file", path.string()));
   }
   size_ = static_cast<uint64_t>(status.st_size);
+  time_ns_ = ModifiedNanoseconds(status);
 }
 
 InputFile::~InputFile() { close(fd_); }
@@ -51,34 +52,39 @@ InputFile::~InputFile() { close(fd_); }
 size_t InputFile::ReadAt(uint64_t offset, void* data, size_t num_bytes) const {
   Retries retries(path_);
   size_t num_read = 0;
-  // A stale handle stays so: later tries open the file again.
-  bool reopen = false;
+  int error = 0;
   while (num_read < num_bytes) {
-    struct stat status = {};
-    const int fd = reopen ? OpenToRead(path_, &status) : fd_;
-    ssize_t n = -1;
-    int error = errno;
-    if (reopen && fd >= 0 &&
-        (!S_ISREG(status.st_mode) ||
-         static_cast<uint64_t>(status.st_size) != size_)) {
-      error = ENOENT;  // what was being read is gone
-    } else if (fd >= 0) {
-      n = pread(fd,
-                static_cast<char*>(data) + num_read,
-                num_bytes - num_read,
-                static_cast<off_t>(offset + num_read));
-      error = errno;
-    }
-    if (reopen && fd >= 0) close(fd);
+    // A stale handle stays so: the next try opens the file again.
+    const bool reopen = error != 0 && error != EINTR;
+    const ssize_t n = reopen && !Reopen()
+                          ? -1
+                          : pread(fd_,
+                                  static_cast<char*>(data) + num_read,
+                                  num_bytes - num_read,
+                                  static_cast<off_t>(offset + num_read));
+    error = n < 0 ? errno : 0;
     if (n == 0) break;
     if (n > 0) {
       num_read += static_cast<size_t>(n);
-      continue;
+    } else if (!retries.Again(error)) {
+      ThrowCannotRead(path_, error);
     }
-    if (!retries.Again(error)) ThrowCannotRead(path_, error);
-    reopen = reopen || error != EINTR;
   }
   return num_read;
+}
+
+bool InputFile::Reopen() const {
+  struct stat status = {};
+  const int fd = OpenToRead(path_, &status);
+  if (fd < 0) return false;
+  if (S_ISREG(status.st_mode) &&
+      static_cast<uint64_t>(status.st_size) == size_ &&
+      ModifiedNanoseconds(status) == time_ns_) {
+    return MoveDescriptor(fd, fd_) == 0;
+  }
+  close(fd);
+  errno = ENOENT;  // what was being read is gone
+  return false;
 }
 
 std::string ReadWholeFile(const std::filesystem::path& path,

@@ -39,8 +39,13 @@ class InputFile {
   size_t ReadAt(uint64_t offset, void* data, size_t num_bytes) const;
 
  private:
+  // Puts the same file, opened anew, in place of the open one. False with errno
+  // set if it cannot be opened or is another by now.
+  bool Reopen() const;
+
   std::filesystem::path path_;
   uint64_t size_ = 0;
+  int64_t time_ns_ = 0;
   int fd_ = -1;
 };
 

@@ -4,6 +4,7 @@
 #include <mutex>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -19,7 +20,8 @@ struct Setting {
   int num_told = 0;
 };
 std::mutex mutex;
-Setting setting;
+// Of the scopes that live, below them that of none.
+std::vector<Setting> settings(1);
 
 constexpr int kMaxTold = 10;
 
@@ -30,6 +32,7 @@ void Tell(const std::filesystem::path& path,
   std::string more;
   {
     const std::lock_guard<std::mutex> lock(mutex);
+    Setting& setting = settings.back();
     if (!setting.log || setting.num_told == kMaxTold) return;
     if (++setting.num_told == kMaxTold) more = "; further ones are not told";
     log = setting.log;
@@ -59,12 +62,8 @@ bool Ask(const std::filesystem::path& path, const Question& question) {
     last = error;
     return is_so;
   });
-  if (!IsTransient(last.value())) return answer;
-  throw Error(ErrorCode::kBadInput,
-              fmt::format("cannot look at {}: {}; check the disk or its server "
-                          "and run again",
-                          path.string(),
-                          last.message()));
+  ThrowIfTransient(ErrnoOf(last), path);
+  return answer;
 }
 
 }  // namespace
@@ -74,16 +73,25 @@ bool IsTransient(int error) {
          error == ETIMEDOUT;
 }
 
+void ThrowIfTransient(int error, const std::filesystem::path& path) {
+  if (!IsTransient(error)) return;
+  throw Error(ErrorCode::kBadInput,
+              fmt::format("cannot look at {}: {}; check the disk or its server "
+                          "and run again",
+                          path.string(),
+                          std::generic_category().message(error)));
+}
+
 RetryScope::RetryScope(LogSink log,
                        const CancelToken* cancel,
                        RetryRules rules) {
   const std::lock_guard<std::mutex> lock(mutex);
-  setting = {std::move(log), cancel, rules, 0};
+  settings.push_back({std::move(log), cancel, rules, 0});
 }
 
 RetryScope::~RetryScope() {
   const std::lock_guard<std::mutex> lock(mutex);
-  setting = {};
+  settings.pop_back();
 }
 
 bool Retries::Again(int error) {
@@ -93,8 +101,8 @@ bool Retries::Again(int error) {
   const CancelToken* cancel = nullptr;
   {
     const std::lock_guard<std::mutex> lock(mutex);
-    rules = setting.rules;
-    cancel = setting.cancel;
+    rules = settings.back().rules;
+    cancel = settings.back().cancel;
   }
   if (num_tries_ == rules.max_tries) return false;
   std::chrono::milliseconds wait = rules.first_wait;
@@ -118,7 +126,7 @@ bool IsFolder(const std::filesystem::path& path) {
 }
 
 bool IsRegularFile(const std::filesystem::path& path) {
-  return RetryFileSystem(path, [&](std::error_code& error) {
+  return Ask(path, [&](std::error_code& error) {
     return std::filesystem::is_regular_file(path, error);
   });
 }

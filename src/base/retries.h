@@ -21,6 +21,9 @@ namespace hpm {
 // EIO, ESTALE, EAGAIN, ETIMEDOUT; not EINTR, after which any call is made again
 // at once.
 bool IsTransient(int error);
+// Error(kBadInput): nobody may take a file for absent whose disk does not
+// answer.
+void ThrowIfTransient(int error, const std::filesystem::path& path);
 
 struct RetryRules {
   int max_tries = 5;  // beside the first
@@ -29,7 +32,7 @@ struct RetryRules {
 };
 
 // While it lives, retries of this process are told to `log` and end when
-// `cancel` is cancelled. The last one made counts.
+// `cancel` is cancelled. The innermost counts.
 class RetryScope {
  public:
   RetryScope(LogSink log, const CancelToken* cancel, RetryRules rules = {});
@@ -90,7 +93,7 @@ auto RetryFileSystem(const std::filesystem::path& path, const Call& call) {
   while (true) {
     std::error_code error;
     const auto result = call(error);
-    if (!error || !retries.Again(error.value())) return result;
+    if (!error || !retries.Again(ErrnoOf(error))) return result;
   }
 }
 
@@ -112,7 +115,6 @@ auto RetryWriting(const Write& write) {
 // Throw Error(kBadInput) where the disk does not answer; other errors are no.
 bool Exists(const std::filesystem::path& path);
 bool IsFolder(const std::filesystem::path& path);
-// False where the disk does not answer.
 bool IsRegularFile(const std::filesystem::path& path);
 // With those above it.
 std::error_code MakeFolder(const std::filesystem::path& path);

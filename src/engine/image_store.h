@@ -5,22 +5,28 @@
 #include "src/base/error.h"
 #include "src/image/gray_image.h"
 
+#include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace hpm {
 
-// A picture that only reading found to be damaged. The plan of the run counted
-// on it, so the run ends with this error.
-class UnreadableImage : public Error {
+// Pictures that only reading found to be damaged. The plan of the run counted
+// on them, so the run ends with this error when it has read the pictures of a
+// stage.
+class UnreadableImages : public Error {
  public:
-  UnreadableImage(int image, const std::string& message)
-      : Error(ErrorCode::kBadInput, message), image_(image) {}
-  int image() const { return image_; }
+  using Reasons = std::map<int, std::string>;  // by image; at least one
+
+  explicit UnreadableImages(Reasons reasons)
+      : Error(ErrorCode::kBadInput, reasons.begin()->second),
+        reasons_(std::move(reasons)) {}
+  const Reasons& reasons() const { return reasons_; }
 
  private:
-  int image_;
+  Reasons reasons_;
 };
 
 // Of the size of the image's camera, halved as the stage wants it and
@@ -38,7 +44,8 @@ class ImageStore {
   virtual void StartStage(int level) = 0;
 
   // As many as there are requests; called by several threads at once. Throws
-  // UnreadableImage, and Error(kUsage) for images it knows nothing of.
+  // UnreadableImages, which holds all such of the requests, and Error(kUsage)
+  // for images it knows nothing of.
   virtual std::vector<std::shared_ptr<const GrayImage>> Images(
       const std::vector<ImageRequest>& requests) = 0;
 };

@@ -101,6 +101,7 @@ class ScheduledRun {
       own.problem = problem;
       RunProblem(worker, own);
     });
+    if (!unreadable_.empty()) throw UnreadableImages(unreadable_);
     event.number = event.num_problems;
     Tell(events_.progress, event);
   }
@@ -127,10 +128,13 @@ class ScheduledRun {
     try {
       RunStage(
           spec_, event.stage, event.problem, images_, maps_, worker, control);
+    } catch (const UnreadableImages& error) {
+      // Who needs none of these goes on: then all are known at once.
+      const std::lock_guard<std::mutex> lock(mutex_);
+      unreadable_.insert(error.reasons().begin(), error.reasons().end());
     } catch (const Error& error) {
       const std::lock_guard<std::mutex> lock(mutex_);
-      if (error.code() != ErrorCode::kBadInput || !events_.failed ||
-          dynamic_cast<const UnreadableImage*>(&error) != nullptr) {
+      if (error.code() != ErrorCode::kBadInput || !events_.failed) {
         // Another worker may take the problem.
         --num_started_;
         done_work_ -= counted;
@@ -152,6 +156,7 @@ class ScheduledRun {
   std::vector<std::vector<int>> needed_;  // problems, by stage
   double total_work_ = 0, done_work_ = 0;
   int num_started_ = 0;  // of the stage
+  UnreadableImages::Reasons unreadable_;
 };
 
 }  // namespace

@@ -37,7 +37,7 @@ struct RunEvents {
 // computed: a store that knows what an earlier run or another process made
 // makes this a resumed run, or one share of a stage.
 //
-// Throws UnreadableImage, Error(kInterrupted), and what stores and backends
+// Throws UnreadableImages, Error(kInterrupted), and what stores and backends
 // throw; Error(kUsage) for a spec that cannot be run and for pictures of
 // another size than their cameras.
 void RunSchedule(const RunSpec& spec,

@@ -10,7 +10,7 @@
 namespace hpm {
 
 // Reads what the stage needs from the stores and writes what it made. Throws
-// UnreadableImage, Error(kInterrupted) when cancelled, and what the stores and
+// UnreadableImages, Error(kInterrupted) when cancelled, and what the stores and
 // the backend throw.
 void RunStage(const RunSpec& spec,
               int stage,

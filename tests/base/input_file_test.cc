@@ -25,6 +25,7 @@ struct Faults {
   int num_opens = 0;  // that fail
   int num_reads = 0;
   int stale_fd = -1;  // no read of it succeeds any more
+  int num_stale_reads = 0;
   size_t max_read = SIZE_MAX;
 };
 Faults faults;
@@ -55,10 +56,16 @@ int open(const char* path, int flags, ...) {
   return fd;
 }
 
+int dup2(int from, int to) noexcept {
+  if (to == faults.stale_fd) faults.stale_fd = -1;
+  return static_cast<int>(syscall(SYS_dup3, from, to, 0));
+}
+
 ssize_t pread(int fd, void* data, size_t num_bytes, off_t offset) {
   if (faults.num_reads > 0 && faults.error == ESTALE) faults.stale_fd = fd;
   if (Fails(&faults.num_reads)) return -1;
   if (fd == faults.stale_fd) {
+    ++faults.num_stale_reads;
     errno = ESTALE;
     return -1;
   }
@@ -130,14 +137,34 @@ TEST_F(InputFileTest, ErrorsThatStayEndTheTries) {
   }
 }
 
-TEST_F(InputFileTest, AnotherFileUnderTheNameIsNotReadOnWith) {
+TEST_F(InputFileTest, AStaleHandleIsReplacedOnce) {
   const RetryScope scope(nullptr, nullptr, Quick());
   const InputFile file(folder_ / "f");
-  WriteFile(folder_ / "f", "longer than before");
   faults.error = ESTALE;
   faults.num_reads = 1;
-  char byte;
-  EXPECT_THROW(file.ReadAt(0, &byte, 1), Error);
+  char byte = 0;
+  for (const char expected : {'0', '1', '2'}) {
+    EXPECT_EQ(file.ReadAt(expected - '0', &byte, 1), 1u);
+    EXPECT_EQ(byte, expected);
+  }
+  EXPECT_EQ(faults.num_stale_reads, 0);
+}
+
+TEST_F(InputFileTest, AnotherFileUnderTheNameIsNotReadOnWith) {
+  const RetryScope scope(nullptr, nullptr, Quick());
+  for (const char* other : {"longer than before", "same longs"}) {
+    WriteFile(folder_ / "f", "0123456789");
+    const InputFile file(folder_ / "f");
+    WriteFile(folder_ / "f", other);
+    std::filesystem::last_write_time(
+        folder_ / "f",
+        std::filesystem::last_write_time(folder_ / "f") +
+            std::chrono::seconds(1));
+    faults.error = ESTALE;
+    faults.num_reads = 1;
+    char byte;
+    EXPECT_THROW(file.ReadAt(0, &byte, 1), Error) << other;
+  }
 }
 
 TEST_F(InputFileTest, TooLargeAFileIsRefusedUnread) {

@@ -46,7 +46,7 @@ build_test() {
 
 mkdir -p "$work"
 if ! echo 'int main() {}' | clang++ -stdlib=libc++ -include string -x c++ - -o "$work/probe" 2>/dev/null; then
-  echo "skipped: clang++ with libc++ is not installed; scripts/install_dependencies.sh --release installs it" >&2
+  echo "skipped: clang++ with libc++ is not installed: apt-get install libc++-dev, which displaces libunwind-dev, of COLMAP's glog" >&2
   exit 77
 fi
 compiler=(

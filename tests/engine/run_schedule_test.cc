@@ -78,10 +78,14 @@ class RunScheduleTest : public testing::Test {
             {-0.5f * static_cast<float>(image), 0, 0}};
   }
 
-  void Run(const RunEvents& events = {}) {
-    MemoryImageStore images(std::vector<GrayImage>(
+  static std::vector<GrayImage> Grey() {
+    return std::vector<GrayImage>(
         kNumImages,
-        {kWidth, kHeight, std::vector<uint8_t>(kWidth * kHeight, 7)}));
+        {kWidth, kHeight, std::vector<uint8_t>(kWidth * kHeight, 7)});
+  }
+
+  void Run(const RunEvents& events = {}) {
+    MemoryImageStore images(Grey());
     RunOn(&images, events);
   }
   void RunOn(ImageStore* images, const RunEvents& events) {
@@ -279,22 +283,34 @@ TEST_F(RunScheduleTest, WhatCannotBeRunIsRefusedBeforeAnythingIsDone) {
   expect_usage_error("no passes");
 }
 
-class BrokenImages : public ImageStore {
+class BrokenImages : public MemoryImageStore {
  public:
-  void StartStage(int) override {}
+  using MemoryImageStore::MemoryImageStore;
   std::vector<std::shared_ptr<const GrayImage>> Images(
       const std::vector<ImageRequest>& requests) override {
-    throw UnreadableImage(requests[0].image, "torn");
+    for (const ImageRequest& request : requests) {
+      if (request.image != 2) throw UnreadableImages({{request.image, "torn"}});
+    }
+    return MemoryImageStore::Images(requests);
   }
 };
 
-// It would change what the others are matched against, so it is no failure of
-// one problem.
-TEST_F(RunScheduleTest, AnImageThatCannotBeReadEndsTheRun) {
+// They would change what the others are matched against, so they are no failure
+// of one problem. All are told at once, so that one new plan does.
+TEST_F(RunScheduleTest, ImagesThatCannotBeReadEndTheRunAfterTheStage) {
+  spec_.problems[2].sources.clear();
   RunEvents events;
   events.failed = [](int, int, const Error&) { ADD_FAILURE(); };
-  BrokenImages images;
-  EXPECT_THROW(RunOn(&images, events), UnreadableImage);
+  BrokenImages images(Grey());
+  try {
+    RunOn(&images, events);
+    ADD_FAILURE();
+  } catch (const UnreadableImages& error) {
+    EXPECT_THAT(
+        error.reasons(),
+        ElementsAre(testing::Pair(0, "torn"), testing::Pair(1, "torn")));
+  }
+  EXPECT_THAT(store_->written, ElementsAre(std::pair(0, 2)));
 }
 
 }  // namespace

@@ -1,118 +1,17 @@
 // A libFuzzer program per reader of files that come from elsewhere; which one
-// is named by HPM_FUZZ_READER. A reader may throw Error and nothing else. Built
-// and run by scripts/fuzz.sh, with sanitizers.
-#include "colmap_plugin/formats/consistency_graph.h"
-#include "colmap_plugin/formats/map_file.h"
-#include "colmap_plugin/formats/patch_match_cfg.h"
-#include "colmap_plugin/formats/pmvs.h"
-#include "colmap_plugin/formats/sparse_model.h"
-#include "colmap_plugin/tool/parse_options.h"
-#include "colmap_plugin/workspace/image_size.h"
-#include "colmap_plugin/workspace/lock_owner.h"
-#include "colmap_plugin/workspace/stamp.h"
-#include "src/base/error.h"
-#include "src/base/input_file.h"
+// is named by HPM_FUZZ_READER. Built and run by scripts/fuzz.sh, with
+// sanitizers.
+#include "tests/fuzz/readers.h"
 
+#include <cstddef>
 #include <cstdint>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <functional>
-#include <map>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 #include <unistd.h>
 
-namespace hpm {
-namespace {
-
-struct Reader {
-  // The input is cut at kSeparator into these files; a '/' makes a folder.
-  std::vector<std::string> files;
-  std::function<void(const std::filesystem::path& folder)> read;
-};
-
-constexpr std::string_view kSeparator = "\xff--\xff";
-
-const std::map<std::string, Reader>& Readers() {
-  static const std::map<std::string, Reader> readers = {
-      {"map", {{"a.bin"}, [](const auto& f) { ReadMap(f / "a.bin"); }}},
-      {"graph",
-       {{"a.bin"}, [](const auto& f) { ReadConsistencyGraph(f / "a.bin"); }}},
-      {"cfg",
-       {{"a.cfg"}, [](const auto& f) { ReadPatchMatchCfg(f / "a.cfg"); }}},
-      {"image_size",
-       {{"a.jpg"}, [](const auto& f) { ReadImageSize(f / "a.jpg"); }}},
-      {"model_binary",
-       {{"cameras.bin", "images.bin", "points3D.bin", "rigs.bin", "frames.bin"},
-        [](const auto& f) { ReadSparseModel(f); }}},
-      {"model_text",
-       {{"cameras.txt", "images.txt", "points3D.txt", "rigs.txt", "frames.txt"},
-        [](const auto& f) { ReadSparseModel(f); }}},
-      // What is read back is written as it was.
-      {"stamp",
-       {{"stamps/s/a.json"},
-        [](const auto& f) {
-          const std::optional<Stamp> stamp = ReadStamp(f, "a", "s");
-          if (!stamp) return;
-          WriteStamp(f, "b", "s", *stamp);
-          if (!ReadStamp(f, "b", "s")) std::abort();
-        }}},
-      {"lock",
-       {{"lock"},
-        [](const auto& f) {
-          const std::optional<LockOwner> owner =
-              ParseLockOwner(ReadWholeFile(f / "lock", 4096));
-          if (!owner) return;
-          IsVisible(*owner, ThisProcess());
-          if (!ParseLockOwner(FormatLockOwner(*owner))) std::abort();
-        }}},
-      {"project_file",
-       {{"project.ini"},
-        [](const auto& f) {
-          ParseOptions({"--project_path", (f / "project.ini").string()});
-        }}},
-      {"pmvs",
-       {{"bundle.rd.out",
-         "vis.dat",
-         "option-all",
-         "txt/00000000.txt",
-         "txt/00000001.txt"},
-        [](const auto& f) {
-          ReadPmvsOptionFile(f / "option-all", 2);
-          ReadPmvsModel(f, [](const auto&) { return std::pair(8, 6); });
-        }}}};
-  return readers;
-}
-
-}  // namespace
-}  // namespace hpm
-
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
-  static const hpm::Reader& reader = hpm::Readers().at(HPM_FUZZ_READER);
-  static const std::filesystem::path folder =
-      std::filesystem::path("/dev/shm") /
-      ("hpm_fuzz_" HPM_FUZZ_READER "_" + std::to_string(getpid()));
-  std::string_view rest(reinterpret_cast<const char*>(data), size);
-  for (const std::string& file : reader.files) {
-    const std::filesystem::path path = folder / file;
-    std::filesystem::create_directories(path.parent_path());
-    const size_t end = rest.find(hpm::kSeparator);
-    std::ofstream(path, std::ios::binary) << rest.substr(0, end);
-    // What no part is left for is missing.
-    if (end == std::string_view::npos && rest.empty())
-      std::filesystem::remove(path);
-    rest = end == std::string_view::npos
-               ? std::string_view()
-               : rest.substr(end + hpm::kSeparator.size());
-  }
-  try {
-    reader.read(folder);
-  } catch (const hpm::Error&) {
-  }
+  static const std::string folder =
+      "/dev/shm/hpm_fuzz_" HPM_FUZZ_READER "_" + std::to_string(getpid());
+  hpm::ReadInput(
+      HPM_FUZZ_READER, {reinterpret_cast<const char*>(data), size}, folder);
   return 0;
 }

@@ -8,10 +8,12 @@ work=$(realpath -m "${2:?usage: deb_test.sh BUILD_FOLDER FOLDER}")
 root=$(realpath "$(dirname "$0")/../..")
 fail() { echo "FAILED: $*" >&2; exit 1; }
 
-command -v dpkg-shlibdeps >/dev/null || {
-  echo "skipped: dpkg-dev is not installed; scripts/install_dependencies.sh --release installs it" >&2
-  exit 77
-}
+for tool in dpkg-shlibdeps:dpkg-dev file:file; do
+  command -v "${tool%:*}" >/dev/null || {
+    echo "skipped: ${tool#*:} is not installed; scripts/install_dependencies.sh installs it" >&2
+    exit 77
+  }
+done
 rm -rf "$work"
 mkdir -p "$work"
 

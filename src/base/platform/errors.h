@@ -1,7 +1,9 @@
-// The numbers of errors that some systems do not have, and so never give.
+// The numbers of errors: those that some systems do not have, and so never
+// give, and what std::filesystem says as numbers of errno.
 #pragma once
 
 #include <cerrno>
+#include <system_error>
 
 #ifndef EDQUOT
 #define EDQUOT 10069
@@ -9,3 +11,10 @@
 #ifndef ESTALE
 #define ESTALE 10070
 #endif
+
+namespace hpm {
+
+// 0: none. What has no such number is EIO.
+int ErrnoOf(const std::error_code& error);
+
+}  // namespace hpm

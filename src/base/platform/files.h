@@ -25,6 +25,10 @@ namespace hpm {
 // cache of the disk. 0 or -1 and errno, as fsync(2).
 int SyncFile(int fd);
 
+// From then on `to` is the open file that `from` was, for all threads at once;
+// `from` is closed in any case. 0 or -1 and errno.
+int MoveDescriptor(int from, int to);
+
 // Whether one kernel alone writes the file system of this open file, so that an
 // flock is seen by everybody who could open the file. False where in doubt:
 // network file systems, FUSE, clusters, virtual machines' shared folders.

@@ -1,3 +1,4 @@
+#include "src/base/platform/errors.h"
 #include "src/base/platform/files.h"
 
 #include <algorithm>
@@ -13,6 +14,8 @@
 
 namespace hpm {
 
+int ErrnoOf(const std::error_code& error) { return error.value(); }
+
 int SyncFile(int fd) {
 #ifdef F_FULLFSYNC
   // Of Apple's: fsync() there leaves the bytes in the cache of the disk. Some
@@ -21,6 +24,15 @@ int SyncFile(int fd) {
   if (errno != ENOTSUP && errno != EINVAL && errno != ENOTTY) return -1;
 #endif
   return fsync(fd);
+}
+
+int MoveDescriptor(int from, int to) {
+  int result = dup2(from, to);
+  if (result >= 0) result = fcntl(to, F_SETFD, FD_CLOEXEC);
+  const int error = errno;
+  close(from);
+  errno = error;
+  return result < 0 ? -1 : 0;
 }
 
 bool IsOnLocalFileSystem(int fd) {

@@ -1,3 +1,4 @@
+#include "src/base/platform/errors.h"
 #include "src/base/platform/files.h"
 
 #include <cerrno>
@@ -107,6 +108,12 @@ int LookAt(const wchar_t* path, DWORD extra_flags, struct stat* status) {
 
 }  // namespace
 
+int ErrnoOf(const std::error_code& error) {
+  if (!error || error.category() != std::system_category())
+    return error.value();
+  return ErrnoOf(static_cast<DWORD>(error.value()));
+}
+
 int open(const wchar_t* path, int flags, int) {
   const int how = flags & (_O_RDONLY | _O_WRONLY | _O_RDWR);
   const DWORD access = how == _O_RDWR     ? GENERIC_READ | GENERIC_WRITE
@@ -195,6 +202,12 @@ int futimens(int fd, const void*) {
 }
 
 int SyncFile(int fd) { return FlushFileBuffers(HandleOf(fd)) ? 0 : Fail(); }
+
+int MoveDescriptor(int from, int to) {
+  const int result = _dup2(from, to);
+  _close(from);
+  return result;
+}
 
 bool IsOnLocalFileSystem(int fd) {
   FILE_REMOTE_PROTOCOL_INFO remote = {};

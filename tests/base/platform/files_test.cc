@@ -1,5 +1,6 @@
 #include "src/base/platform/files.h"
 
+#include "src/base/platform/errors.h"
 #include "tests/base/scratch_folder.h"
 
 #include <cerrno>
@@ -37,6 +38,29 @@ TEST_F(Files, AreWrittenAndReadAtPlaces) {
   EXPECT_EQ(SyncFile(fd), 0);
   EXPECT_EQ(close(fd), 0);
   EXPECT_EQ(ReadFile(folder_ / "a").size(), 15u);
+}
+
+TEST_F(Files, ADescriptorTakesThePlaceOfAnother) {
+  WriteFile(folder_ / "a", "a");
+  WriteFile(folder_ / "b", "b");
+  const int a = open((folder_ / "a").c_str(), O_RDONLY);
+  const int b = open((folder_ / "b").c_str(), O_RDONLY);
+  ASSERT_EQ(MoveDescriptor(b, a), 0);
+  char byte = 0;
+  EXPECT_EQ(pread(a, &byte, 1, 0), 1);
+  EXPECT_EQ(byte, 'b');
+  EXPECT_EQ(pread(b, &byte, 1, 0), -1);
+  close(a);
+}
+
+// As std::filesystem says it: on Windows in numbers of its own, of which the 5
+// of a missing permission would be EIO.
+TEST_F(Files, ErrorsHaveTheNumbersOfErrno) {
+  std::error_code error;
+  EXPECT_FALSE(
+      std::filesystem::create_directory(folder_ / "none" / "a", error));
+  EXPECT_EQ(ErrnoOf(error), ENOENT);
+  EXPECT_EQ(ErrnoOf(std::error_code()), 0);
 }
 
 TEST_F(Files, AreCreatedOnce) {

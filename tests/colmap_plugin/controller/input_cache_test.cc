@@ -80,7 +80,7 @@ TEST_F(InputCacheTest, ReadsAgainWhatDidNotFit) {
   InputCache cache = MakeCache(kImageBytes - 1);
   ASSERT_NE(Image(&cache, 1), nullptr);
   std::filesystem::remove(workspace_.ImagePath(1));
-  EXPECT_THROW(Image(&cache, 1), UnreadableImage);
+  EXPECT_THROW(Image(&cache, 1), UnreadableImages);
 }
 
 TEST_F(InputCacheTest, AStageGetsImagesOfItsLevel) {
@@ -132,7 +132,7 @@ TEST_F(InputCacheTest, ImagesOfLaterStagesTakeNoRoomFromThoseOfThis) {
   std::filesystem::remove(workspace_.ImagePath(0));
   EXPECT_EQ(Image(&cache, 0), first);
   cache.StartStage(0);
-  EXPECT_THROW(Image(&cache, 0), UnreadableImage);
+  EXPECT_THROW(Image(&cache, 0), UnreadableImages);
 }
 
 TEST_F(InputCacheTest, ThreadsShareWhatOneOfThemReads) {
@@ -163,7 +163,7 @@ TEST_F(InputCacheTest, ThreadsShareWhatOneOfThemReads) {
   }
 }
 
-TEST_F(InputCacheTest, TheFirstUnreadableImageIsNamed) {
+TEST_F(InputCacheTest, AllUnreadableImagesAreNamed) {
   for (const int image : {1, 2})
     std::filesystem::resize_file(workspace_.ImagePath(image), 60);
   InputCache cache = MakeCache(kPlenty);
@@ -174,8 +174,11 @@ TEST_F(InputCacheTest, TheFirstUnreadableImageIsNamed) {
   try {
     cache.Images(requests);
     ADD_FAILURE();
-  } catch (const UnreadableImage& error) {
-    EXPECT_EQ(error.image(), 2);
+  } catch (const UnreadableImages& error) {
+    EXPECT_THAT(error.reasons(),
+                testing::ElementsAre(
+                    testing::Pair(1, testing::HasSubstr(ViewName(1))),
+                    testing::Pair(2, testing::HasSubstr(ViewName(2)))));
   }
 }
 
@@ -185,8 +188,8 @@ TEST_F(InputCacheTest, AnUnreadableImageIsNamed) {
   try {
     Image(&cache, 2);
     ADD_FAILURE();
-  } catch (const UnreadableImage& error) {
-    EXPECT_EQ(error.image(), 2);
+  } catch (const UnreadableImages& error) {
+    EXPECT_EQ(error.reasons().begin()->first, 2);
     EXPECT_EQ(error.code(), ErrorCode::kBadInput);
     EXPECT_THAT(error.what(), testing::HasSubstr(ViewName(2)));
   }

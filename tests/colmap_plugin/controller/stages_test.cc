@@ -3,6 +3,7 @@
 #include "colmap_plugin/formats/consistency_graph.h"
 #include "colmap_plugin/formats/map_file.h"
 #include "colmap_plugin/options/method_options.h"
+#include "colmap_plugin/workspace/file_system.h"
 #include "colmap_plugin/workspace/stamp.h"
 #include "src/base/error.h"
 #include "src/base/platform/processes.h"
@@ -271,6 +272,8 @@ TEST_F(StagePlanTest, TouchedMapsAreKeptAndStampedWithTheirNewTime) {
       ReadStamp(workspace_.StatePath(), workspace_.ImageName(2), "geometric");
   ASSERT_TRUE(stamp);
   EXPECT_EQ(stamp->files.at("depth").state, StateOf(depth));
+  // Whoever made the copy did not sync it.
+  EXPECT_EQ(stamp->unsynced_since, UnsyncedSince(workspace_.StatePath()));
 }
 
 // Inner maps are not synced to the disk: after a power cut a file of the right
@@ -289,6 +292,11 @@ TEST_F(StagePlanTest, UnsyncedMapsAreReadAfterTheMachineWasStartedAnew) {
     stamp->unsynced_since = boot;
     WriteStamp(workspace_.StatePath(), name, "photometric", *stamp);
     EXPECT_THAT(Needed(Plan(), 0), IsEmpty());
+    // On a local disk they are compared once after each start.
+    EXPECT_EQ(
+        ReadStamp(workspace_.StatePath(), name, "photometric")->unsynced_since,
+        boot == "another" ? UnsyncedSince(workspace_.StatePath()) : boot);
+    WriteStamp(workspace_.StatePath(), name, "photometric", *stamp);
 
     const auto time = std::filesystem::last_write_time(depth);
     std::string bytes = ReadFile(depth);

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -26,6 +27,7 @@ struct Faults {
   int fsync_error = 0;
   int close_error = 0;
   int rename_error = 0;
+  int stat_error = 0;
   int num_interrupts = 0;       // writes and syncs that fail with EINTR first
   int num_failures = INT_MAX;   // after so many every call succeeds
   size_t max_write = SIZE_MAX;  // short writes
@@ -77,6 +79,11 @@ int rename(const char* from, const char* to) noexcept {
       syscall(SYS_renameat2, AT_FDCWD, from, AT_FDCWD, to, 0));
 }
 
+int stat(const char* path, struct stat* status) noexcept {
+  if (faults.stat_error != 0 && Intercept("stat", faults.stat_error)) return -1;
+  return static_cast<int>(syscall(SYS_newfstatat, AT_FDCWD, path, status, 0));
+}
+
 }  // extern "C"
 
 namespace hpm {
@@ -87,6 +94,8 @@ std::string ThisHost() {
   gethostname(host, sizeof(host) - 1);
   return host;
 }
+
+RetryRules Quick() { return {3, std::chrono::milliseconds(1), 1}; }
 
 // Writes path with the faults that `prepare` sets; returns the error, if any.
 template <class Prepare>
@@ -114,6 +123,55 @@ TEST(AtomicFile, SyncsTheFileBeforeRenamingAndTheFolderAfter) {
   EXPECT_EQ(ReadFile(folder / "f"), "0123456789");
 }
 
+TEST(AtomicFile, WhatWasFlushedIsNotSyncedAgain) {
+  const ScratchFolder folder;
+  faults = Faults();
+  faults.recording = true;
+  {
+    AtomicFile file(folder / "f");
+    file.Write("0123");
+    file.Flush();
+    file.Write("4567");
+    file.Flush();
+    file.Commit();
+  }
+  faults.recording = false;
+  EXPECT_THAT(faults.calls,
+              testing::ElementsAre("write",
+                                   "fsync",
+                                   "write",
+                                   "fsync",
+                                   "close",
+                                   "rename",
+                                   "fsync",
+                                   "close"));
+}
+
+TEST(AtomicFile, TheFolderIsOpenedAnewForEachTry) {
+  const ScratchFolder folder;
+  const RetryScope scope(nullptr, nullptr, Quick());
+  faults = Faults();
+  faults.recording = true;
+  {
+    AtomicFile file(folder / "f");
+    file.Write("0123");
+    file.Flush();
+    faults.fsync_error = ESTALE;
+    faults.num_failures = 1;
+    file.Commit();
+  }
+  faults.recording = false;
+  EXPECT_THAT(faults.calls,
+              testing::ElementsAre("write",
+                                   "fsync",
+                                   "close",
+                                   "rename",
+                                   "fsync",
+                                   "close",
+                                   "fsync",
+                                   "close"));
+}
+
 TEST(AtomicFile, WhatNeedsNoSyncIsRenamedAllTheSame) {
   const ScratchFolder folder;
   faults = Faults();
@@ -137,8 +195,6 @@ constexpr int Faults::*kSteps[] = {&Faults::write_error,
                                    &Faults::fsync_error,
                                    &Faults::close_error,
                                    &Faults::rename_error};
-
-RetryRules Quick() { return {3, std::chrono::milliseconds(1), 1}; }
 
 TEST(AtomicFile, ErrorsThatPassAreRetriedAndTold) {
   const ScratchFolder folder;
@@ -211,6 +267,21 @@ TEST(AtomicFile, ErrorsThatStayEndTheTries) {
     EXPECT_EQ(ReadFile(folder / "f"), "old");
     EXPECT_EQ(folder.CountFiles(), 1u);
   }
+}
+
+TEST(StateOf, AFileWhoseDiskDoesNotAnswerIsNotAbsent) {
+  const ScratchFolder folder;
+  WriteFile(folder / "f", "1");
+  const RetryScope scope(nullptr, nullptr, Quick());
+  faults = Faults();
+  faults.stat_error = EIO;
+  faults.recording = true;
+  ExpectError(ErrorCode::kBadInput, "f", [&] { StateOf(folder / "f"); });
+  ExpectError(ErrorCode::kBadInput, "f", [&] { IsRegularFile(folder / "f"); });
+  faults.stat_error = ENOENT;
+  EXPECT_FALSE(StateOf(folder / "f"));
+  EXPECT_FALSE(IsRegularFile(folder / "f"));
+  faults.recording = false;
 }
 
 TEST(AtomicFile, AnInterruptEndsTheTries) {

@@ -1,7 +1,9 @@
 #include "colmap_plugin/tool/dispatch.h"
 #include "colmap_plugin/tool/help.h"
 #include "src/base/error.h"
+#include "src/base/retries.h"
 
+#include <cerrno>
 #include <new>
 #include <sstream>
 
@@ -71,6 +73,25 @@ TEST_F(CommandTest, GoodRunReturnsZeroAndSaysElapsedTimeLikeColmap) {
               AllOf(HasSubstr("\nReading workspace...\n"),
                     HasSubstr("\nElapsed time: 1.500 [minutes]\n")));
   EXPECT_THAT(err_.str(), IsEmpty());
+}
+
+TEST_F(CommandTest, AllCommandsTellRetriesAndHearTheSignalMeanwhile) {
+  for (const char* command : {"patch_match_stereo", "check"}) {
+    action_ = [] {
+      const std::filesystem::path path = "some.file";
+      Retries retries(path);
+      EXPECT_TRUE(retries.Again(EIO));
+    };
+    EXPECT_EQ(Run({command, "--workspace_path", "w"}), 0);
+    EXPECT_THAT(out_.str() + err_.str(),
+                HasSubstr("some.file: Input/output error; trying again in"))
+        << command;
+    out_.str("");
+    err_.str("");
+  }
+  cancel_.Cancel();
+  EXPECT_EQ(Run({"check", "--workspace_path", "w"}),
+            static_cast<int>(ErrorCode::kInterrupted));
 }
 
 TEST_F(CommandTest, CommandWordMayBeLeftOut) {
