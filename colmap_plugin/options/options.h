@@ -61,9 +61,9 @@ struct HpmOptions {
   double geom_max_error = MethodParams().geom_max_error;  // pixels, its cap
   int num_levels = -1;  // of the hierarchy; -1: by method and image size
   double filter_min_agreement = MapFilter().min_agreement;
-  std::string log_format = "text";    // or json: one object a line
-  bool keep_photometric = true;       // 0: only *.geometric.bin are published
-  bool report = true;                 // stereo/report.html at the end of a run
+  std::string log_format = "text";  // or json: one object a line
+  bool keep_photometric = true;     // 0: only *.geometric.bin are published
+  bool report = true;               // stereo/report.html at the end of a run
   bool previews = false;   // colour pictures of the maps in stereo/previews
   bool overwrite = false;  // recompute maps that are complete
 };

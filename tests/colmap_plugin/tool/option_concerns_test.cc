@@ -224,6 +224,9 @@ TEST(OptionConcerns, FingerprintsChangeWhereMapsDo) {
       SCOPED_TRACE(option.name + ", levels " + levels);
       const Results after = run(Change(option));
       for (const auto& [stage, was] : before) {
+        // Which it leaves out.
+        if (option.name == "Hpm.keep_photometric" && stage == "photometric")
+          continue;
         const Result& is = after.at(stage);
         for (const auto& [image, maps] : was.maps) {
           ASSERT_FALSE(maps.empty() || was.fingerprints.at(image).empty());
