@@ -4,8 +4,10 @@
 #include "src/engine/memory_stores.h"
 #include "tests/engine/still_backend.h"
 
+#include <functional>
 #include <memory>
 #include <set>
+#include <string>
 #include <utility>
 
 #include <gmock/gmock.h>
@@ -15,6 +17,7 @@ namespace hpm {
 namespace {
 
 using testing::ElementsAre;
+using testing::HasSubstr;
 
 constexpr int kWidth = 24, kHeight = 16;
 constexpr int kNumImages = 3;
@@ -63,8 +66,6 @@ class RunScheduleTest : public testing::Test {
       spec_.problems.push_back(problem);
     }
     store_ = std::make_unique<WatchedStore>(spec_.problems);
-    for (int i = 0; i < 2; ++i)
-      cpus_.push_back(std::make_unique<StillBackend>(&log_));
   }
 
   static Camera CameraOf(int image) {
@@ -89,8 +90,11 @@ class RunScheduleTest : public testing::Test {
     RunOn(&images, events);
   }
   void RunOn(ImageStore* images, const RunEvents& events) {
+    std::vector<std::unique_ptr<Backend>> cpus;
+    for (int i = 0; i < 2; ++i)
+      cpus.push_back(std::make_unique<StillBackend>(&log_));
     WorkerPool workers(
-        std::move(cpus_), {}, false, [](LogLevel, const std::string&) {});
+        std::move(cpus), {}, false, [](LogLevel, const std::string&) {});
     RunSchedule(spec_, images, store_.get(), &workers, events);
   }
 
@@ -101,7 +105,6 @@ class RunScheduleTest : public testing::Test {
   RunSpec spec_;
   std::unique_ptr<WatchedStore> store_;
   StillLog log_;
-  std::vector<std::unique_ptr<Backend>> cpus_;
 };
 
 TEST_F(RunScheduleTest, EveryStageOfAProblemSeesItsLevelAndTheMapsBefore) {
@@ -250,37 +253,42 @@ TEST_F(RunScheduleTest, ACancelledRunEnds) {
   EXPECT_EQ(store_->written.count({2, 0}), 0u);
 }
 
+// Runs what is no use, and returns the error.
+std::string UsageErrorOf(const std::function<void()>& run) {
+  try {
+    run();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::kUsage);
+    return error.what();
+  }
+  return "no error";
+}
+
 TEST_F(RunScheduleTest, WhatCannotBeRunIsRefusedBeforeAnythingIsDone) {
-  const auto expect_usage_error = [&](const char* what) {
-    try {
-      Run();
-      ADD_FAILURE() << "no error about: " << what;
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ErrorCode::kUsage);
-      EXPECT_THAT(error.what(), testing::HasSubstr(what));
-    }
-    EXPECT_THAT(log_.calls, testing::IsEmpty());
-    for (int i = 0; i < 2; ++i)
-      cpus_.push_back(std::make_unique<StillBackend>(&log_));
-  };
   const RunSpec good = spec_;
   spec_.problems[1].sources.resize(kMaxViews + 1);
-  expect_usage_error("33 sources");
-  spec_ = good;
-  spec_.problems[0].camera.width *= 2;
-  expect_usage_error("its camera 24 x 8");
-  spec_ = good;
-  spec_.problems[0].sources[1].camera.height /= 2;
-  expect_usage_error("image 2: the picture has 12 x 8 pixels");
-  spec_ = good;
-  for (const int image : {-1, kNumImages}) {
-    spec_.problems[0].sources[0].image = image;
-    expect_usage_error("there is no picture");
-  }
+  EXPECT_THAT(UsageErrorOf([&] { Run(); }), HasSubstr("33 sources"));
+  EXPECT_THAT(log_.calls, testing::IsEmpty());
   spec_ = good;
   spec_.filter = MapFilter();
   spec_.schedule.stages.back().passes.clear();
-  expect_usage_error("no passes");
+  EXPECT_THAT(UsageErrorOf([&] { Run(); }), HasSubstr("no passes"));
+  EXPECT_THAT(log_.calls, testing::IsEmpty());
+}
+
+TEST_F(RunScheduleTest, PicturesThatAreNotTheCamerasEndTheRun) {
+  const RunSpec good = spec_;
+  spec_.problems[0].camera.width *= 2;
+  EXPECT_THAT(UsageErrorOf([&] { Run(); }), HasSubstr("its camera 24 x 8"));
+  spec_ = good;
+  spec_.problems[0].sources[1].camera.height /= 2;
+  EXPECT_THAT(UsageErrorOf([&] { Run(); }),
+              HasSubstr("image 2: the picture has 12 x 8 pixels"));
+  for (const int image : {-1, kNumImages}) {
+    spec_ = good;
+    spec_.problems[0].sources[0].image = image;
+    EXPECT_THAT(UsageErrorOf([&] { Run(); }), HasSubstr("there is no picture"));
+  }
 }
 
 class BrokenImages : public MemoryImageStore {
