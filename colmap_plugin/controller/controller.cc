@@ -8,8 +8,10 @@
 #include "colmap_plugin/controller/run_budget.h"
 #include "colmap_plugin/controller/run_resources.h"
 #include "colmap_plugin/controller/run_setup.h"
+#include "colmap_plugin/controller/run_share.h"
 #include "colmap_plugin/controller/run_statistics.h"
 #include "colmap_plugin/controller/thread_supply.h"
+#include "colmap_plugin/controller/unreadable_images.h"
 #include "colmap_plugin/formats/atomic_file.h"
 #include "colmap_plugin/options/method_options.h"
 #include "colmap_plugin/workspace/far_origin.h"
@@ -99,6 +101,12 @@ void ForgetMaps(const Workspace& workspace,
   RemoveInnerMaps(workspace);
 }
 
+std::vector<std::string> NamesOf(const std::vector<Stage>& stages) {
+  std::vector<std::string> names;
+  for (const Stage& stage : stages) names.push_back(stage.name);
+  return names;
+}
+
 // What came from such images is stamped as incomplete.
 void WarnOfChangedImages(const Workspace& workspace,
                          const std::vector<StereoProblem>& problems,
@@ -157,13 +165,25 @@ RunSummary PatchMatchController::Run() {
   const CpuTarget target = FindCpuTarget(options_.hpm.cpu_target);
 
   const RetryScope retries(log_, &cancel_);
+  const RunShare share(options_.hpm);
+  if (options_.hpm.overwrite && !share.IsWhole()) {
+    throw Error(ErrorCode::kUsage,
+                "--Hpm.overwrite 1 goes with all shards and stages only; to "
+                "make all maps anew, delete the folder stereo/hpm_mvs/stamps "
+                "of the workspace before");
+  }
 
   log_(LogLevel::kInfo, "Reading workspace...");
   Workspace workspace(options_.workspace, log_, cancel_);
   CancelToken stop(&cancel_);
-  const RunLock lock(workspace.StatePath(), log_, &stop);
+  const RunLock lock(workspace.StatePath(),
+                     log_,
+                     &stop,
+                     {share.shard().index, share.shard().count});
   RemoveStaleTemporaries(workspace.StereoPath());
   ImageContents contents(workspace);
+  for (const std::string& line : DropUnreadable(&workspace, &contents, stop))
+    log_(LogLevel::kWarning, line);
   workspace.StretchDeepImages(FindDeepRange(workspace, &contents, log_, stop));
 
   log_(LogLevel::kInfo, "Reading configuration...");
@@ -187,6 +207,13 @@ RunSummary PatchMatchController::Run() {
   SetLevels(workspace, &options_);
   const Schedule schedule = MakeSchedule(MakeScheduleOptions(options_));
   StagePlan plan(workspace, problems, schedule, options_, &contents, stop);
+  share.CheckStage(NamesOf(plan.stages()));
+  if (share.Finishes() && plan.num_open() > 0) {
+    throw Error(kNotReady,
+                fmt::format("{} maps are still to be made, so there is nothing "
+                            "to finish; hpm_mvs status tells of which stages",
+                            plan.num_open()));
+  }
   PrepareOutputs(workspace, problems, BytesToWrite(problems, plan), log_);
   AnnouncePlan(problems, plan, options_, log_);
   const RunResources resources = OpenResources(
@@ -197,10 +224,11 @@ RunSummary PatchMatchController::Run() {
     ForgetMaps(workspace, problems, plan);
   }
   for (bool is_done = false; !is_done;) {
-    for (const StereoProblem& problem : problems) {
+    for (size_t p = 0; p < num_references; ++p) {
       // What is wrong was said when it was found.
-      if (problem.is_reference && !CanBeComputed(workspace, problem))
-        statistics.AddFailure(workspace.ImageName(problem.ref_image));
+      if (!CanBeComputed(workspace, problems[p]) &&
+          plan.IsMine(static_cast<int>(p)))
+        statistics.AddFailure(workspace.ImageName(problems[p].ref_image));
     }
     FileMapStore maps(workspace,
                       problems,
@@ -227,6 +255,8 @@ RunSummary PatchMatchController::Run() {
       // it from the start; what is made already and does not need it stays.
       lock.ThrowIfLost();
       log_(LogLevel::kWarning, error.what());
+      if (!share.IsWhole())
+        RecordUnreadable(workspace, contents, error.image(), error.what());
       workspace.DropPicture(error.image());
       // The references are the same: those that cannot be computed stay as
       // problems.
@@ -242,14 +272,19 @@ RunSummary PatchMatchController::Run() {
   }
   lock.ThrowIfLost();
   WarnOfChangedImages(workspace, problems, contents, log_);
-  // In this order: a cut that is cut short is made good from the inner maps.
-  if (!statistics.AnyFailed())
-    CutInputMaps(workspace, problems, plan, lock, stop);
-  RemoveInnerMaps(workspace);
+  // Other shards may still need them.
+  if (share.IsWhole() || share.Finishes()) {
+    // In this order: a cut that is cut short is made good from the inner maps.
+    if (!statistics.AnyFailed())
+      CutInputMaps(workspace, problems, plan, lock, stop);
+    RemoveInnerMaps(workspace);
+  }
 
   std::vector<std::string> names;
-  for (size_t p = 0; p < num_references; ++p)
-    names.push_back(workspace.ImageName(problems[p].ref_image));
+  for (size_t p = 0; p < num_references; ++p) {
+    if (plan.IsMine(static_cast<int>(p)))
+      names.push_back(workspace.ImageName(problems[p].ref_image));
+  }
   for (const std::string& line :
        FilterWarnings(statistics.losses(), options_)) {
     log_(LogLevel::kWarning, line);
@@ -262,7 +297,9 @@ RunSummary PatchMatchController::Run() {
   summary.warnings = warnings_;
   summary.num_fusable = CountFinalMaps(workspace, plan);
   if (statistics.AnyComputed() || statistics.AnyFailed()) {
-    WriteRunRecord(workspace.StatePath(), statistics.Record(options_, summary));
+    WriteRunRecord(workspace.StatePath(),
+                   share.RecordName(),
+                   statistics.Record(options_, summary));
   }
   return summary;
 }

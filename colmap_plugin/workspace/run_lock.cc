@@ -11,6 +11,7 @@
 #include <cmath>
 #include <optional>
 #include <system_error>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -104,7 +105,24 @@ bool IsSameFile(int fd, const fs::path& path) {
 }
 
 std::string NameOf(const LockOwner& owner) {
-  return fmt::format("host {}, process {}", QuotedName(owner.host), owner.pid);
+  return fmt::format("host {}, process {}{}",
+                     QuotedName(owner.host),
+                     owner.pid,
+                     owner.job.empty() ? "" : ", job " + QuotedName(owner.job));
+}
+
+constexpr const char* kLockName = "lock";
+
+std::string FileNameOf(const LockShard& shard) {
+  if (shard.count <= 1) return kLockName;
+  return fmt::format("{}.{}-of-{}", kLockName, shard.index, shard.count);
+}
+
+// Whether a lock of this name goes with that of the shard.
+bool GoesWith(const std::string& name, const LockShard& shard) {
+  const std::string suffix = fmt::format("-of-{}", shard.count);
+  return shard.count > 1 && name.size() > suffix.size() &&
+         name.compare(name.size() - suffix.size(), suffix.size(), suffix) == 0;
 }
 
 // hint: how a run that is gone is found out, else that is up to the user.
@@ -139,8 +157,9 @@ Flock TryFlock(int fd) {
 RunLock::RunLock(const fs::path& state_path,
                  const LogSink& log,
                  CancelToken* stop,
+                 const LockShard& shard,
                  const LockRules& rules)
-    : path_(state_path / "lock"), stop_(stop), rules_(rules) {
+    : path_(state_path / FileNameOf(shard)), stop_(stop), rules_(rules) {
   const std::error_code error = MakeFolder(state_path);
   if (error) ThrowSystemError(path_, error.value());
   const LockOwner self = ThisProcess();
@@ -148,7 +167,7 @@ RunLock::RunLock(const fs::path& state_path,
   Retries retries(path_);
   while (!TryCreate(self, &retries)) {
     if (++attempt == kMaxAttempts) ThrowOthersAreStarting(path_);
-    RemoveStale(self, log);
+    RemoveStale(path_, self, log);
   }
   try {
     if (may_have_rivals_) {
@@ -157,23 +176,31 @@ RunLock::RunLock(const fs::path& state_path,
       if (!now || now->contents != contents_) ThrowOthersAreStarting(path_);
     }
     heart_ = std::thread([this] { KeepAlive(); });
+    RefuseRivals(shard, self, log);
   } catch (const std::system_error&) {
+    EndHeartbeat();
     Release();
     throw NoThreadError();
   } catch (...) {
+    EndHeartbeat();
     Release();
     throw;
   }
 }
 
 RunLock::~RunLock() {
+  EndHeartbeat();
+  Release();
+}
+
+void RunLock::EndHeartbeat() {
+  if (!heart_.joinable()) return;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     ending_ = true;
   }
   wake_.notify_all();
   heart_.join();
-  Release();
 }
 
 void RunLock::ThrowIfLost() const {
@@ -239,18 +266,20 @@ void RunLock::Release() {
 // only while they live.) Elsewhere two takers may both remove the file, the
 // later one the lock that the earlier one has made by then. So a taker waits
 // before he starts, longer than an owner needs to notice and stop.
-void RunLock::RemoveStale(const LockOwner& self, const LogSink& log) {
-  const FileDescriptor file(RetryCall(path_, [&] { return OpenLock(path_); }));
+void RunLock::RemoveStale(const fs::path& path,
+                          const LockOwner& self,
+                          const LogSink& log) {
+  const FileDescriptor file(RetryCall(path, [&] { return OpenLock(path); }));
   if (file.get() < 0) {
     if (errno == ENOENT) return;
-    ThrowCannotRead(path_, errno);
+    ThrowCannotRead(path, errno);
   }
   std::optional<std::string> contents;
   std::optional<LockOwner> owner;
   for (int i = 0; i <= kMaxTries && !owner; ++i) {
     if (i > 0) std::this_thread::sleep_for(kTryInterval);
     contents = ReadAll(file.get());
-    if (!contents) ThrowCannotRead(path_, errno);
+    if (!contents) ThrowCannotRead(path, errno);
     owner = ParseLockOwner(*contents);
   }
   const bool is_local = rules_.is_local(file.get());
@@ -259,9 +288,9 @@ void RunLock::RemoveStale(const LockOwner& self, const LogSink& log) {
   const bool heartbeat_tells =
       owner && !flock_tells && !is_visible && owner->heartbeat;
   const auto throw_locked = [&] {
-    if (!IsSameFile(file.get(), path_)) return;
+    if (!IsSameFile(file.get(), path)) return;
     ThrowLocked(
-        path_,
+        path,
         *owner,
         heartbeat_tells
             ? fmt::format(" (it counts as gone {} seconds after its last sign "
@@ -272,8 +301,9 @@ void RunLock::RemoveStale(const LockOwner& self, const LogSink& log) {
             : "");
   };
   if (owner && !flock_tells) {
-    if (is_visible ? IsAlive(*owner)
-                   : !owner->heartbeat || ShowsSignOfLife(*contents, log)) {
+    if (is_visible
+            ? IsAlive(*owner)
+            : !owner->heartbeat || ShowsSignOfLife(path, *contents, log)) {
       return throw_locked();
     }
   }
@@ -291,11 +321,11 @@ void RunLock::RemoveStale(const LockOwner& self, const LogSink& log) {
   } else {
     may_have_rivals_ = true;
   }
-  const auto now = ReadLockFile(path_);
-  if (!now || now->contents != *contents || !IsSameFile(file.get(), path_))
+  const auto now = ReadLockFile(path);
+  if (!now || now->contents != *contents || !IsSameFile(file.get(), path))
     return;
-  if (unlink(path_.c_str()) != 0 && errno != ENOENT)
-    ThrowSystemError(path_, errno);
+  if (unlink(path.c_str()) != 0 && errno != ENOENT)
+    ThrowSystemError(path, errno);
   if (heartbeat_tells) {
     log(LogLevel::kWarning,
         fmt::format("the lock of another run ({}) is taken over, since that "
@@ -309,10 +339,11 @@ void RunLock::RemoveStale(const LockOwner& self, const LogSink& log) {
 }
 
 // Also true if nothing can be told.
-bool RunLock::ShowsSignOfLife(const std::string& contents,
+bool RunLock::ShowsSignOfLife(const fs::path& path,
+                              const std::string& contents,
                               const LogSink& log) const {
-  const auto first = ReadLockFile(path_);
-  const auto clock = FileSystemTime(path_.parent_path());
+  const auto first = ReadLockFile(path);
+  const auto clock = FileSystemTime(path.parent_path());
   if (!first || !clock || first->contents != contents) return true;
   const double age = 1e-9 * static_cast<double>(*clock - first->touched);
   const double expiry = std::chrono::duration<double>(rules_.expiry).count();
@@ -322,11 +353,35 @@ bool RunLock::ShowsSignOfLife(const std::string& contents,
       fmt::format(
           "{} is of a run that seems to be gone; watching it for {:.0f} "
           "seconds...",
-          path_.string(),
+          path.string(),
           std::chrono::duration<double>(rules_.watch).count()));
   Wait(rules_.watch);
-  const auto last = ReadLockFile(path_);
+  const auto last = ReadLockFile(path);
   return !last || last->contents != contents || last->touched != first->touched;
+}
+
+// Throws Error(kLocked) if someone is at work who does not go with this run;
+// removes what the dead have left.
+void RunLock::RefuseRivals(const LockShard& shard,
+                           const LockOwner& self,
+                           const LogSink& log) {
+  std::vector<fs::path> rivals;
+  std::error_code error;
+  for (fs::directory_iterator it(path_.parent_path(), error), end;
+       !error && it != end;
+       it.increment(error)) {
+    const std::string name = it->path().filename().string();
+    const bool is_lock =
+        name == kLockName || name.rfind(std::string(kLockName) + ".", 0) == 0;
+    if (is_lock && it->path() != path_ && !GoesWith(name, shard))
+      rivals.push_back(it->path());
+  }
+  for (const fs::path& rival : rivals) {
+    for (int i = 0; fs::exists(fs::symlink_status(rival, error)); ++i) {
+      if (i == kMaxAttempts) ThrowOthersAreStarting(rival);
+      RemoveStale(rival, self, log);
+    }
+  }
 }
 
 void RunLock::Wait(std::chrono::milliseconds time) const {

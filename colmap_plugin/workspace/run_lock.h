@@ -1,4 +1,5 @@
-// One run per workspace: stereo/hpm_mvs/lock names the run that works on it.
+// Who works on a workspace: one run on all of it (stereo/hpm_mvs/lock), or runs
+// on its shards, one on each (lock.0-of-3 and so on), all of the same division.
 #pragma once
 
 #include "colmap_plugin/workspace/file_system.h"
@@ -31,6 +32,11 @@ struct LockRules {
   bool (*is_local)(int fd) = IsOnLocalFileSystem;
 };
 
+struct LockShard {
+  int index = 0;
+  int count = 1;  // 1: all of the workspace
+};
+
 // The file is created with O_EXCL and names the owner (lock_owner.h). Of
 // several takers of a lock exactly one wins. Whether an owner is dead is told
 // - on a local file system by the flock that it holds on the file: from every
@@ -40,6 +46,8 @@ struct LockRules {
 // - else by its heartbeat, the time of the file against the clock of the file
 //   system. An owner that was stopped so long may wake: it notices (see stop,
 //   ThrowIfLost) and ends.
+// Who has made his file looks for those that exclude it; so of two who do not
+// go together one sees the other, whoever was first.
 class RunLock {
  public:
   // Throws Error(kLocked) naming host, process and remedy if another run (or
@@ -50,6 +58,7 @@ class RunLock {
   RunLock(const std::filesystem::path& state_path,
           const LogSink& log,
           CancelToken* stop,
+          const LockShard& shard = {},
           const LockRules& rules = {});
   ~RunLock();  // removes the file if it is still this lock's
   RunLock(const RunLock&) = delete;
@@ -64,10 +73,18 @@ class RunLock {
  private:
   // False: try again.
   bool TryCreate(LockOwner self, Retries* retries);
-  void RemoveStale(const LockOwner& self, const LogSink& log);
-  bool ShowsSignOfLife(const std::string& contents, const LogSink& log) const;
+  void RemoveStale(const std::filesystem::path& path,
+                   const LockOwner& self,
+                   const LogSink& log);
+  bool ShowsSignOfLife(const std::filesystem::path& path,
+                       const std::string& contents,
+                       const LogSink& log) const;
+  void RefuseRivals(const LockShard& shard,
+                    const LockOwner& self,
+                    const LogSink& log);
   void Wait(std::chrono::milliseconds time) const;
   void KeepAlive();
+  void EndHeartbeat();
   void Release();
 
   std::filesystem::path path_;

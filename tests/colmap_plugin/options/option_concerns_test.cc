@@ -59,7 +59,9 @@ bool IsGivenByTheTest(const OptionSpec& option) {
                                        "config_path",
                                        "project_path",
                                        "workspace_format",
-                                       "Hpm.mask_path"};
+                                       "Hpm.mask_path",
+                                       "Hpm.shard",
+                                       "Hpm.stage"};
   return names.count(option.name) > 0;
 }
 

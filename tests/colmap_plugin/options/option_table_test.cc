@@ -138,12 +138,14 @@ TEST(OptionTableTest, EveryMemberOfHpmOptionsIsAnOption) {
                num_levels,
                filter_min_agreement,
                previews,
-               overwrite] = HpmOptions();
+               overwrite,
+               shard,
+               stage] = HpmOptions();
   (void)method, (void)device, (void)gpu_images, (void)cpu_target,
       (void)num_iterations, (void)num_geom_iterations;
   (void)num_geom_passes, (void)geom_weight, (void)geom_max_error,
       (void)num_levels, (void)filter_min_agreement;
-  (void)previews, (void)overwrite;
+  (void)previews, (void)overwrite, (void)shard, (void)stage;
   (void)num_fine_iterations, (void)num_fine_geom_passes;
   (void)quality, (void)max_views, (void)weak_gradient;
   for (const char* name : {"method",
@@ -163,7 +165,9 @@ TEST(OptionTableTest, EveryMemberOfHpmOptionsIsAnOption) {
                            "num_levels",
                            "filter_min_agreement",
                            "previews",
-                           "overwrite"}) {
+                           "overwrite",
+                           "shard",
+                           "stage"}) {
     EXPECT_NE(FindOption(std::string("Hpm.") + name), nullptr) << name;
   }
 }
@@ -281,6 +285,11 @@ const std::vector<Values>& ValueTable() {
       {"Hpm.filter_min_agreement", {"0", "1"}, {"-0.1", "1.1"}, "0 to 1"},
       bools("Hpm.previews"),
       bools("Hpm.overwrite"),
+      {"Hpm.shard",
+       {"0/1", "2/3", "99999/100000"},
+       {"3/3", "-1/3", "1", "1/", "/3", "1/3x", "0/0", "0/100001", " 0/1"},
+       "i/n with 0 <= i < n <= 100000"},
+      {"Hpm.stage", {"all", "finish", "level_1_photometric"}, {}, ""},
   };
   return values;
 }
