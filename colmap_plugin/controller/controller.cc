@@ -8,8 +8,10 @@
 #include "colmap_plugin/controller/run_budget.h"
 #include "colmap_plugin/controller/run_resources.h"
 #include "colmap_plugin/controller/run_setup.h"
+#include "colmap_plugin/controller/run_share.h"
 #include "colmap_plugin/controller/run_statistics.h"
 #include "colmap_plugin/controller/thread_supply.h"
+#include "colmap_plugin/controller/unreadable_images.h"
 #include "colmap_plugin/formats/atomic_file.h"
 #include "colmap_plugin/options/method_options.h"
 #include "colmap_plugin/workspace/far_origin.h"
@@ -99,6 +101,12 @@ void ForgetMaps(const Workspace& workspace,
   RemoveInnerMaps(workspace);
 }
 
+std::vector<std::string> NamesOf(const std::vector<Stage>& stages) {
+  std::vector<std::string> names;
+  for (const Stage& stage : stages) names.push_back(stage.name);
+  return names;
+}
+
 // What came from such images is stamped as incomplete.
 void WarnOfChangedImages(const Workspace& workspace,
                          const std::vector<StereoProblem>& problems,
@@ -168,6 +176,8 @@ struct PatchMatchController::RunState {
   const ModelOverview& overview;
   const CancelToken& stop;
   const RunLock& lock;
+  const RunShare& share;
+  const ImageContents& contents;
   const Schedule& schedule;
   const RunResources& resources;
   std::vector<StereoProblem>& problems;
@@ -186,13 +196,25 @@ RunSummary PatchMatchController::Run() {
   const CpuTarget target = FindCpuTarget(options_.hpm.cpu_target);
 
   const RetryScope retries(log_, &cancel_);
+  const RunShare share(options_.hpm);
+  if (options_.hpm.overwrite && !share.IsWhole()) {
+    throw Error(ErrorCode::kUsage,
+                "--Hpm.overwrite 1 goes with all shards and stages only; to "
+                "make all maps anew, delete the folder stereo/hpm_mvs/stamps "
+                "of the workspace before");
+  }
 
   log_(LogLevel::kInfo, "Reading workspace...");
   Workspace workspace(options_.workspace, log_, cancel_);
   CancelToken stop(&cancel_);
-  const RunLock lock(workspace.StatePath(), log_, &stop);
+  const RunLock lock(workspace.StatePath(),
+                     log_,
+                     &stop,
+                     {share.shard().index, share.shard().count});
   RemoveStaleTemporaries(workspace.StereoPath());
   ImageContents contents(workspace);
+  for (const std::string& line : DropUnreadable(&workspace, &contents, stop))
+    log_(LogLevel::kWarning, line);
   workspace.StretchDeepImages(FindDeepRange(workspace, &contents, log_, stop));
 
   log_(LogLevel::kInfo, "Reading configuration...");
@@ -207,6 +229,13 @@ RunSummary PatchMatchController::Run() {
   SetLevels(workspace, &options_);
   const Schedule schedule = MakeSchedule(MakeScheduleOptions(options_));
   StagePlan plan(workspace, problems, schedule, options_, &contents, stop);
+  share.CheckStage(NamesOf(plan.stages()));
+  if (share.Finishes() && plan.num_open() > 0) {
+    throw Error(kNotReady,
+                fmt::format("{} maps are still to be made, so there is nothing "
+                            "to finish; hpm_mvs status tells of which stages",
+                            plan.num_open()));
+  }
   PrepareOutputs(workspace, problems, BytesToWrite(problems, plan), log_);
   AnnouncePlan(problems, plan, options_, log_);
   const RunResources resources = OpenResources(
@@ -221,6 +250,8 @@ RunSummary PatchMatchController::Run() {
                         overview,
                         stop,
                         lock,
+                        share,
+                        contents,
                         schedule,
                         resources,
                         problems,
@@ -231,19 +262,26 @@ RunSummary PatchMatchController::Run() {
   }
   lock.ThrowIfLost();
   WarnOfChangedImages(workspace, problems, contents, log_);
-  // In this order: a cut that is cut short is made good from the inner maps.
-  if (!statistics.AnyFailed())
-    CutInputMaps(workspace, problems, plan, lock, stop);
-  RemoveInnerMaps(workspace);
+  // Other shards may still need them.
+  if (share.IsWhole() || share.Finishes()) {
+    // In this order: a cut that is cut short is made good from the inner maps.
+    if (!statistics.AnyFailed())
+      CutInputMaps(workspace, problems, plan, lock, stop);
+    RemoveInnerMaps(workspace);
+  }
   return Summarize(run, seconds());
 }
 
 bool PatchMatchController::ComputeStages(const RunState& run) const {
-  for (const StereoProblem& problem : run.problems) {
+  for (size_t p = 0; p < run.problems.size(); ++p) {
+    const StereoProblem& problem = run.problems[p];
+    if (!problem.is_reference || !run.plan.IsMine(static_cast<int>(p)))
+      continue;
     // What is wrong was said when it was found.
-    if (problem.is_reference && !CanBeComputed(run.workspace, problem))
+    if (!CanBeComputed(run.workspace, problem)) {
       run.statistics.AddFailure(run.workspace.ImageName(problem.ref_image),
                                 true);
+    }
   }
   FileMapStore maps(run.workspace,
                     run.problems,
@@ -271,6 +309,8 @@ bool PatchMatchController::ComputeStages(const RunState& run) const {
     run.lock.ThrowIfLost();
     for (const auto& [image, reason] : error.reasons()) {
       log_(LogLevel::kWarning, reason);
+      if (!run.share.IsWhole())
+        RecordUnreadable(run.workspace, run.contents, image, reason);
       run.workspace.DropPicture(image);
     }
     // The references are the same: those that cannot be computed stay as
@@ -294,8 +334,9 @@ RunSummary PatchMatchController::Summarize(const RunState& run,
     log_(LogLevel::kWarning, line);
   }
   std::vector<std::string> names;
-  for (const StereoProblem& problem : run.problems) {
-    if (problem.is_reference)
+  for (size_t p = 0; p < run.problems.size(); ++p) {
+    const StereoProblem& problem = run.problems[p];
+    if (problem.is_reference && run.plan.IsMine(static_cast<int>(p)))
       names.push_back(run.workspace.ImageName(problem.ref_image));
   }
   RunSummary summary =
@@ -305,6 +346,7 @@ RunSummary PatchMatchController::Summarize(const RunState& run,
   summary.num_fusable = CountFinalMaps(run.workspace, run.plan);
   if (run.statistics.AnyComputed() || run.statistics.AnyFailed()) {
     WriteRunRecord(run.workspace.StatePath(),
+                   run.share.RecordName(),
                    run.statistics.Record(options_, summary));
   }
   return summary;

@@ -7,14 +7,17 @@
 #include "colmap_plugin/workspace/file_system.h"
 #include "colmap_plugin/workspace/source_level.h"
 #include "colmap_plugin/workspace/stamp.h"
+#include "src/base/error.h"
 #include "src/base/retries.h"
 #include "src/engine/phase_timer.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <limits>
 #include <system_error>
 #include <utility>
 
+#include <fmt/format.h>
 #include <tbb/parallel_invoke.h>
 
 namespace hpm {
@@ -42,7 +45,25 @@ bool FileMapStore::IsNeeded(int stage, int problem) const {
              workspace_.ImageName(problems_[problem].ref_image));
 }
 
-void FileMapStore::StartStage(int) { inputs_->ForgetDepths(); }
+void FileMapStore::StartStage(int stage) {
+  inputs_->ForgetDepths();
+  // A whole run knows what it made, and goes on without what failed.
+  if (RunShare(options_.hpm).IsWhole()) return;
+  const std::vector<std::string> missing = plan_.MissingInputs(stage);
+  if (missing.empty()) return;
+  constexpr size_t kMaxNames = 20;
+  const size_t num_named = std::min(kMaxNames, missing.size());
+  throw Error(
+      kNotReady,
+      fmt::format("stage {} needs the maps of stage {} of {} images that are "
+                  "not there yet: {}{}; run that stage of all shards first, "
+                  "hpm_mvs status tells how far it is",
+                  plan_.stages()[stage].name,
+                  plan_.stages()[stage - 1].name,
+                  missing.size(),
+                  fmt::join(missing.begin(), missing.begin() + num_named, ", "),
+                  num_named < missing.size() ? ", ..." : ""));
+}
 
 bool FileMapStore::ReadPlanes(int stage,
                               int problem,

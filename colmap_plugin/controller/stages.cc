@@ -100,7 +100,8 @@ StagePlan::StagePlan(const Workspace& workspace,
       contents_(contents),
       cancel_(cancel),
       access_(access),
-      stages_(MakeStages(schedule, options.hpm.keep_photometric)) {
+      stages_(MakeStages(schedule, options.hpm.keep_photometric)),
+      share_(options.hpm) {
   Plan(/*look_at_maps=*/!options.hpm.overwrite);
 }
 
@@ -146,14 +147,22 @@ void StagePlan::Plan(bool look_at_maps) {
   needed_.assign(num_stages, std::vector<bool>(num_problems, false));
   states_.assign(num_stages,
                  std::vector<MapState>(num_problems, MapState::kNotAsked));
+  mine_ = share_.Problems(problems, workspace_.num_images());
+  inputs_.assign(num_stages, std::vector<bool>(num_problems, false));
+  num_open_ = 0;
   for (int s = num_stages - 1; s >= 0; --s) {
     std::vector<bool> wanted(num_problems);  // by the stage after
     for (int q = 0; q < num_problems; ++q) {
       if (s + 1 == num_stages || !needed_[s + 1][q]) continue;
-      wanted[q] = true;
+      const bool is_mine = mine_[q] && share_.HasStage(stages_[s + 1].name);
+      const auto want = [&](int p) {
+        wanted[p] = true;
+        if (is_mine) inputs_[s][p] = true;
+      };
+      want(q);
       if (!stages_[s + 1].spec.geometric) continue;
       for (const int src : problems[q].src_images) {
-        if (problem_of_image_[src] >= 0) wanted[problem_of_image_[src]] = true;
+        if (problem_of_image_[src] >= 0) want(problem_of_image_[src]);
       }
     }
     std::vector<int> asked;
@@ -177,6 +186,31 @@ void StagePlan::Plan(bool look_at_maps) {
     }
   }
   replaces_foreign_maps_ = replaces_foreign_maps_ && found_foreign_maps_;
+  for (int s = 0; s < num_stages; ++s) {
+    num_open_ += static_cast<int>(
+        std::count(needed_[s].begin(), needed_[s].end(), true));
+    const bool has_stage = share_.HasStage(stages_[s].name);
+    for (int p = 0; p < num_problems; ++p)
+      needed_[s][p] = needed_[s][p] && has_stage && mine_[p];
+  }
+}
+
+std::vector<std::string> StagePlan::MissingInputs(int s) const {
+  std::vector<std::string> names;
+  if (s == 0) return names;
+  for (int p = 0; p < static_cast<int>(problems_.size()); ++p) {
+    if (!inputs_[s - 1][p] || !CanBeComputed(workspace_, problems_[p]))
+      continue;
+    const int image = problems_[p].ref_image;
+    const StageFiles files = Files(s - 1, image);
+    const bool is_damaged =
+        !mine_[p] && states_[s - 1][p] == MapState::kDamaged;
+    if (is_damaged || !HasCompleteMaps(s - 1, image) || !StateOf(files.depth) ||
+        !StateOf(files.normal)) {
+      names.push_back(workspace_.ImageName(image));
+    }
+  }
+  return names;
 }
 
 std::string StagePlan::CutFingerprintOf(int s, int p) const {
@@ -262,7 +296,8 @@ StagePlan::Found StagePlan::Look(int s, int p, bool may_be_cut) const {
   }
   // Incomplete ones, too: where they cannot be made again, others go on with
   // them.
-  if (!AreIntact(s, image, &*stamp, &found)) {
+  const bool is_read = share_.IsWhole() || inputs_[s][p];
+  if (!AreIntact(s, image, is_read, &*stamp, &found)) {
     if (!found.damaged.empty()) found.state = MapState::kDamaged;
   } else if (is_complete || (is_cut && may_be_cut)) {
     found.state = MapState::kFinished;
@@ -272,13 +307,15 @@ StagePlan::Found StagePlan::Look(int s, int p, bool may_be_cut) const {
   return found;
 }
 
-bool StagePlan::AreIntact(int s, int image, Stamp* stamp, Found* found) const {
+bool StagePlan::AreIntact(
+    int s, int image, bool is_read, Stamp* stamp, Found* found) const {
   const StageFiles files = Files(s, image);
   std::map<std::string, std::filesystem::path> wanted = {
       {"depth", files.depth}, {"normal", files.normal}};
   if (WritesGraph(s, image)) wanted["graph"] = files.graph;
   std::optional<std::string>& since = stamp->unsynced_since;
-  const bool may_be_lost = since && (since->empty() || *since != BootId());
+  const bool may_be_lost =
+      is_read && since && (since->empty() || *since != BootId());
   bool is_absent = false, has_new_time = false;
   for (const auto& [kind, path] : wanted) {
     const std::optional<FileState> state = StateOf(path);
@@ -299,7 +336,9 @@ bool StagePlan::AreIntact(int s, int image, Stamp* stamp, Found* found) const {
     file.state = *state;
     has_new_time |= !has_same_state;
   }
-  if (access_ != PlanAccess::kRun) return !is_absent && found->damaged.empty();
+  // Those of another shard are its own: it may be replacing them.
+  if (access_ != PlanAccess::kRun || !mine_[problem_of_image_[image]])
+    return !is_absent && found->damaged.empty();
   const std::filesystem::path& folder = workspace_.StatePath();
   const std::string& name = workspace_.ImageName(image);
   if (!found->damaged.empty()) {

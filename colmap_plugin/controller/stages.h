@@ -5,6 +5,7 @@
 #pragma once
 
 #include "colmap_plugin/controller/image_contents.h"
+#include "colmap_plugin/controller/run_share.h"
 #include "colmap_plugin/options/options.h"
 #include "colmap_plugin/workspace/problem.h"
 #include "colmap_plugin/workspace/stamp.h"
@@ -81,6 +82,14 @@ class StagePlan {
   bool IsNeeded(int s, int p) const { return needed_[s][p]; }
   // As it was found, by the newest plan.
   MapState StateAt(int s, int p) const { return states_[s][p]; }
+  // Whether the problem is of this process's shard, see RunShare. Only its own
+  // are needed, and in its own stages.
+  bool IsMine(int p) const { return mine_[p]; }
+  // In all stages, of all shards.
+  int num_open() const { return num_open_; }
+  // Of stage s - 1: images whose maps stage s of this process's shard reads and
+  // that are not there (yet), or were made from others that were not.
+  std::vector<std::string> MissingInputs(int s) const;
   // True if maps exist that were made with other options, from other images, by
   // another version or by another program, in the eyes of all plans so far.
   bool ReplacesForeignMaps() const { return replaces_foreign_maps_; }
@@ -129,7 +138,9 @@ class StagePlan {
   void Plan(bool look_at_maps);
   Found Look(int s, int p, bool may_be_cut) const;
   // Whether the files are those the stamp vouches for; see the constructor.
-  bool AreIntact(int s, int image, Stamp* stamp, Found* found) const;
+  // is_read: by this process, so that what was not synced must be compared.
+  bool AreIntact(
+      int s, int image, bool is_read, Stamp* stamp, Found* found) const;
   std::string FingerprintOnDisk(int s, int image) const;
 
   const Workspace& workspace_;
@@ -144,6 +155,11 @@ class StagePlan {
   std::vector<std::vector<std::string>> fingerprints_;  // [stage][problem]
   std::vector<std::vector<bool>> needed_;               // [stage][problem]
   std::vector<std::vector<MapState>> states_;           // [stage][problem]
+  const RunShare share_;
+  std::vector<bool> mine_;  // [problem]
+  // [stage][problem], whether a later stage of this process reads the maps.
+  std::vector<std::vector<bool>> inputs_;
+  int num_open_ = 0;
   std::set<std::filesystem::path> damaged_maps_;
   bool found_foreign_maps_ = false;    // by the newest plan
   bool replaces_foreign_maps_ = true;  // until a plan finds none

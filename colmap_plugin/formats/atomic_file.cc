@@ -19,14 +19,25 @@ namespace {
 
 constexpr size_t kMaxHostLength = 64;
 
-// ".tmp.<host>." : what a temporary of this host has before the process id.
-// The host's name is cut so that temporaries stay short on any system.
+// FNV-1a.
+uint64_t HashOf(const std::string& text) {
+  uint64_t hash = 0xcbf29ce484222325u;
+  for (const char c : text)
+    hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+  return hash;
+}
+
+// ".tmp.<host>.<hash>." : what a temporary of those who know each other by
+// process id has before it. The hash is of the running kernel and of the name
+// space of process ids: containers and machines may have the same name. The
+// host's name is cut so that temporaries stay short on any system.
 std::string TemporaryInfix() {
-  const std::string host = HostName().substr(0, kMaxHostLength);
-  if (host.empty()) return ".tmp.localhost.";
-  std::string infix = fmt::format(".tmp.{}.", host);
-  std::replace(infix.begin(), infix.end(), '/', '_');
-  return infix;
+  std::string host = HostName().substr(0, kMaxHostLength);
+  if (host.empty()) host = "localhost";
+  std::replace(host.begin(), host.end(), '/', '_');
+  static const auto machine =
+      static_cast<uint32_t>(HashOf(BootId() + " " + ProcessNamespace()));
+  return fmt::format(".tmp.{}.{:08x}.", host, machine);
 }
 
 std::string FreeSpace(const fs::path& folder) {
@@ -40,16 +51,14 @@ fs::path ParentFolder(const fs::path& path) {
   return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
 
-// Made from a hash of the file's name (FNV-1a), not from the name itself, which
+// Made from a hash of the file's name, not from the name itself, which
 // may be as long as the disk allows. A process that died with the same id left
 // the same name, which is then replaced.
 fs::path TemporaryBeside(const fs::path& path) {
-  uint64_t hash = 0xcbf29ce484222325u;
-  for (const char c : path.filename().string())
-    hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
-  return ParentFolder(path) /
-         fmt::format(
-             "hpm_{:016x}{}{}", hash, TemporaryInfix(), ThisProcessId());
+  return ParentFolder(path) / fmt::format("hpm_{:016x}{}{}",
+                                          HashOf(path.filename().string()),
+                                          TemporaryInfix(),
+                                          ThisProcessId());
 }
 
 int OpenTemporary(const fs::path& path) {

@@ -29,7 +29,8 @@ enum class Durability {
 class AtomicFile {
  public:
   // Creates missing parent folders. The temporary lies beside the file as
-  // "hpm_<hash of its name>.tmp.<host>.<pid>", opened with O_EXCL | O_NOFOLLOW.
+  // "hpm_<hash of its name>.tmp.<host>.<machine and container>.<pid>", opened
+  // with O_EXCL | O_NOFOLLOW.
   explicit AtomicFile(const std::filesystem::path& path,
                       Durability durability = Durability::kPowerCut);
   ~AtomicFile();  // removes the temporary unless Commit() succeeded
@@ -73,8 +74,9 @@ void WriteFileAtomically(const std::filesystem::path& path,
                          std::string_view contents,
                          Durability durability = Durability::kPowerCut);
 
-// Removes temporaries below `folder` whose process is gone (same host only: the
-// processes of another host cannot be seen). Never throws for files it cannot
+// Removes temporaries below `folder` whose process is gone (of this machine and
+// container only: processes of others cannot be seen, or have others' ids).
+// Never throws for files it cannot
 // remove.
 void RemoveStaleTemporaries(const std::filesystem::path& folder);
 

@@ -2,6 +2,7 @@
 
 #include "colmap_plugin/controller/run_budget.h"
 #include "colmap_plugin/controller/run_resources.h"
+#include "colmap_plugin/controller/run_share.h"
 #include "colmap_plugin/controller/thread_supply.h"
 #include "colmap_plugin/inspect/planned_run.h"
 #include "colmap_plugin/workspace/far_origin.h"
@@ -53,7 +54,10 @@ class Planner {
     const bool is_read = Attempt(
         [&] { run_ = std::make_unique<PlannedRun>(options_, log_, cancel_); });
     if (!is_read) return std::move(plan_);
-    Attempt([&] { ThrowIfLocked(run_->workspace().StatePath()); });
+    Attempt([&] {
+      const ShardNumber shard = RunShare(options_.hpm).shard();
+      ThrowIfLocked(run_->workspace().StatePath(), {shard.index, shard.count});
+    });
     const bool is_planned =
         Attempt([&] { run_->Plan(/*look_at_maps=*/true, log_); });
     if (!is_planned) return std::move(plan_);

@@ -2,6 +2,7 @@
 
 #include "colmap_plugin/controller/deep_images.h"
 #include "colmap_plugin/controller/run_setup.h"
+#include "colmap_plugin/controller/unreadable_images.h"
 #include "colmap_plugin/options/method_options.h"
 
 namespace hpm {
@@ -19,6 +20,10 @@ PlannedRun::PlannedRun(const ControllerOptions& options,
 void PlannedRun::Plan(bool look_at_maps,
                       const LogSink& log,
                       PlanAccess access) {
+  for (const std::string& line :
+       DropUnreadable(&workspace_, &contents_, cancel_)) {
+    if (log) log(LogLevel::kWarning, line);
+  }
   workspace_.StretchDeepImages(
       FindDeepRange(workspace_, &contents_, log, cancel_, access));
   const ProblemOptions& problem_options = options_.problems;

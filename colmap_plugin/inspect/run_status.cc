@@ -50,7 +50,9 @@ RunStatus FindStatus(const ControllerOptions& given,
                      const LogSink& log,
                      const CancelToken& cancel) {
   ControllerOptions options = given;
-  options.hpm.overwrite = false;  // what is there counts
+  options.hpm.overwrite = false;           // what is there counts
+  options.hpm.shard = HpmOptions().shard;  // of all shards and stages
+  options.hpm.stage = HpmOptions().stage;
   PlannedRun run(options, log, cancel);
   run.Plan(/*look_at_maps=*/true,
            log,

@@ -11,9 +11,6 @@
 
 namespace hpm {
 
-// Exit code of a workspace that a run has to go on with.
-constexpr int kNotComplete = 8;
-
 struct StageStatus {
   std::string name;
   // Whose maps are there and good, or are of no use any more, since those of a

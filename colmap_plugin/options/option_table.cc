@@ -1,6 +1,7 @@
 #include "colmap_plugin/options/option_table.h"
 
 #include "colmap_plugin/options/quality.h"
+#include "colmap_plugin/options/shard_number.h"
 #include "src/core/limits.h"
 #include "src/engine/method.h"
 
@@ -97,6 +98,14 @@ OptionSpec Seed(const std::string& name, std::string help) {
       std::move(help));
 }
 
+Allowed AnyShard() {
+  return {"i/n with 0 <= i < n <= 100000",
+          [](const OptionMember& member) {
+            return ParseShard(*std::get<std::string*>(member)).has_value();
+          },
+          {}};
+}
+
 std::vector<OptionSpec> MakeTable() {
   using P = PatchMatchStereoOptions;
   using H = HpmOptions;
@@ -140,6 +149,12 @@ std::vector<OptionSpec> MakeTable() {
           "json: one object a line on standard output, for programs (docs/options.md)"),
       Hpm(kCommon, kNothing, "report", &H::report, Anything(),
           "Write stereo/report.html at the end: pictures, losses and times of all images, warnings with remedies"),
+      Hpm(kExpert, kNothing, "shard", &H::shard, AnyShard(),
+          "Work only on part i of the images, divided in the order of patch-match.cfg into n; other processes do the "
+          "others (docs/cluster.md)"),
+      Hpm(kExpert, kNothing, "stage", &H::stage, Anything(),
+          "Work only on this stage; its maps of the stage before must be there (exit 8 if not). `hpm_mvs status` names "
+          "the stages; finish: computes nothing, removes what only other stages needed"),
       Hpm(kCommon, kNothing, "previews", &H::previews, Anything(),
           "Write colour pictures of the maps to stereo/previews"),
       HpmProblems(kCommon, kInputs, "depth_ranges", &I::depth_ranges, Anything(),

@@ -66,6 +66,9 @@ struct HpmOptions {
   bool report = true;               // stereo/report.html at the end of a run
   bool previews = false;   // colour pictures of the maps in stereo/previews
   bool overwrite = false;  // recompute maps that are complete
+  // Which part of the work this process does, see run_share.h.
+  std::string shard = "0/1";
+  std::string stage = "all";
 };
 
 struct ControllerOptions {

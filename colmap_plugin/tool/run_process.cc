@@ -1,6 +1,7 @@
 #include "colmap_plugin/tool/run_process.h"
 
 #include "colmap_plugin/controller/controller.h"
+#include "colmap_plugin/controller/run_share.h"
 #include "colmap_plugin/inspect/check_maps.h"
 #include "colmap_plugin/inspect/export_maps.h"
 #include "colmap_plugin/inspect/plan_run.h"
@@ -125,7 +126,7 @@ int RunStatusCommand(const CommandCall& call) {
   const int printed = call.print(
       call.own.format == "json" ? StatusJson(status) : StatusText(status));
   if (printed != 0) return printed;
-  if (status.num_needed() > 0) return kNotComplete;
+  if (status.num_needed() > 0) return static_cast<int>(kNotReady);
   return status.failing.empty() ? 0 : static_cast<int>(ErrorCode::kPartial);
 }
 

@@ -2,6 +2,7 @@
 
 #include "src/base/platform/processes.h"
 
+#include <cstdlib>
 #include <limits>
 #include <random>
 
@@ -10,6 +11,20 @@
 
 namespace hpm {
 namespace {
+
+// What Slurm, Kubernetes' Indexed Jobs, PBS and LSF tell their tasks.
+std::string JobOfThisProcess() {
+  std::string job;
+  for (const char* name : {"SLURM_JOB_ID", "PBS_JOBID", "LSB_JOBID"}) {
+    const char* value = std::getenv(name);
+    if (value != nullptr && job.empty()) job = value;
+  }
+  for (const char* name : {"SLURM_ARRAY_TASK_ID", "JOB_COMPLETION_INDEX"}) {
+    const char* value = std::getenv(name);
+    if (value != nullptr) job += (job.empty() ? "" : "_") + std::string(value);
+  }
+  return job;
+}
 
 std::string RandomToken() {
   std::random_device random;
@@ -25,6 +40,7 @@ LockOwner ThisProcess() {
   owner.pid_namespace = ProcessNamespace();
   owner.pid = ThisProcessId();
   owner.start_time = StatusOfProcess(owner.pid).start_time;
+  owner.job = JobOfThisProcess();
   owner.token = RandomToken();
   return owner;
 }
@@ -35,6 +51,7 @@ std::string FormatLockOwner(const LockOwner& owner) {
                                {"pid_namespace", owner.pid_namespace},
                                {"pid", owner.pid},
                                {"start_time", owner.start_time},
+                               {"job", owner.job},
                                {"token", owner.token},
                                {"flock", owner.flock},
                                {"heartbeat", owner.heartbeat}};
@@ -63,6 +80,7 @@ std::optional<LockOwner> ParseLockOwner(const std::string& text) {
     return std::nullopt;
   if (has("boot_id", &nlohmann::json::is_string))
     owner.boot_id = json["boot_id"];
+  if (has("job", &nlohmann::json::is_string)) owner.job = json["job"];
   if (has("token", &nlohmann::json::is_string)) owner.token = json["token"];
   if (has("flock", &nlohmann::json::is_boolean)) owner.flock = json["flock"];
   if (has("heartbeat", &nlohmann::json::is_boolean))

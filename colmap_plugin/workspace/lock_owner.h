@@ -13,6 +13,7 @@ struct LockOwner {
   std::string pid_namespace;  // "" where unknown
   int64_t pid = 0;
   uint64_t start_time = 0;  // clock ticks since boot, 0 where unknown
+  std::string job;          // of a batch system, "" where there is none
   std::string token;        // random, so that no two locks have the same bytes
   bool flock = false;       // it holds an flock on the file while it lives
   bool heartbeat = false;   // it touches the file while it lives

@@ -1,6 +1,6 @@
 #include "colmap_plugin/workspace/run_lock.h"
 
-#include "colmap_plugin/formats/image_name.h"
+#include "colmap_plugin/workspace/lock_file.h"
 #include "colmap_plugin/workspace/lock_owner.h"
 #include "src/base/error.h"
 #include "src/base/retries.h"
@@ -11,6 +11,7 @@
 #include <cmath>
 #include <optional>
 #include <system_error>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -25,56 +26,6 @@ constexpr int kMaxTries = 10;
 constexpr auto kTryInterval = std::chrono::milliseconds(10);
 // Lost races against other takers before giving up.
 constexpr int kMaxAttempts = 100;
-constexpr size_t kMaxLockBytes = 4096;
-
-class FileDescriptor {
- public:
-  explicit FileDescriptor(int fd) : fd_(fd) {}
-  ~FileDescriptor() {
-    if (fd_ >= 0) close(fd_);
-  }
-  FileDescriptor(const FileDescriptor&) = delete;
-  FileDescriptor& operator=(const FileDescriptor&) = delete;
-  int get() const { return fd_; }
-
- private:
-  int fd_;
-};
-
-int OpenLock(const fs::path& path) {
-  return open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
-}
-
-// Nothing if it cannot be read.
-std::optional<std::string> ReadAll(int fd) {
-  std::string text(kMaxLockBytes, '\0');
-  ssize_t n;
-  do {
-    n = pread(fd, text.data(), text.size(), 0);
-  } while (n < 0 && errno == EINTR);
-  if (n < 0) return std::nullopt;
-  text.resize(static_cast<size_t>(n));
-  return text;
-}
-
-// What stands under the name now: network file systems ask their server when a
-// file is opened and may show what they remember otherwise.
-struct LockFile {
-  std::string contents;
-  int64_t touched = 0;  // nanoseconds since 1970
-};
-
-std::optional<LockFile> ReadLockFile(const fs::path& path) {
-  const FileDescriptor file(OpenLock(path));
-  if (file.get() < 0) return std::nullopt;
-  struct stat status = {};
-  const std::optional<std::string> contents = ReadAll(file.get());
-  if (!contents || fstat(file.get(), &status) != 0) {
-    errno = EIO;
-    return std::nullopt;
-  }
-  return LockFile{*contents, ModifiedNanoseconds(status)};
-}
 
 bool IsSameFile(int fd, const fs::path& path) {
   struct stat opened = {};
@@ -94,31 +45,6 @@ bool IsSameFile(int fd, const fs::path& path) {
                                                : "make the folder writable"));
 }
 
-[[noreturn]] void ThrowCannotRead(const fs::path& path, int error) {
-  throw Error(
-      ErrorCode::kBadInput,
-      fmt::format("cannot read {}: {}; make it readable, or delete it if no "
-                  "other run works on this workspace",
-                  path.string(),
-                  std::generic_category().message(error)));
-}
-
-std::string NameOf(const LockOwner& owner) {
-  return fmt::format("host {}, process {}", QuotedName(owner.host), owner.pid);
-}
-
-// hint: how a run that is gone is found out, else that is up to the user.
-[[noreturn]] void ThrowLocked(const fs::path& path,
-                              const LockOwner& owner,
-                              const std::string& hint) {
-  throw Error(ErrorCode::kLocked,
-              fmt::format("another run ({}) works on this workspace; wait for "
-                          "it{}, or delete {} if that run is gone",
-                          NameOf(owner),
-                          hint,
-                          path.string()));
-}
-
 [[noreturn]] void ThrowOthersAreStarting(const fs::path& path) {
   throw Error(ErrorCode::kLocked,
               fmt::format("other runs are starting on this workspace at the "
@@ -127,20 +53,14 @@ std::string NameOf(const LockOwner& owner) {
                           path.string()));
 }
 
-enum class Flock { kTaken, kHeldByAnother, kUnsupported };
-
-Flock TryFlock(int fd) {
-  if (flock(fd, LOCK_EX | LOCK_NB) == 0) return Flock::kTaken;
-  return errno == EWOULDBLOCK ? Flock::kHeldByAnother : Flock::kUnsupported;
-}
-
 }  // namespace
 
 RunLock::RunLock(const fs::path& state_path,
                  const LogSink& log,
                  CancelToken* stop,
+                 const LockShard& shard,
                  const LockRules& rules)
-    : path_(state_path / "lock"), stop_(stop), rules_(rules) {
+    : path_(state_path / LockFileName(shard)), stop_(stop), rules_(rules) {
   const std::error_code error = MakeFolder(state_path);
   if (error) ThrowSystemError(path_, ErrnoOf(error));
   const LockOwner self = ThisProcess();
@@ -148,7 +68,7 @@ RunLock::RunLock(const fs::path& state_path,
   Retries retries(path_);
   while (!TryCreate(self, &retries)) {
     if (++attempt == kMaxAttempts) ThrowOthersAreStarting(path_);
-    RemoveStale(self, log);
+    RemoveStale(path_, self, log);
   }
   try {
     if (may_have_rivals_) {
@@ -157,23 +77,31 @@ RunLock::RunLock(const fs::path& state_path,
       if (!now || now->contents != contents_) ThrowOthersAreStarting(path_);
     }
     heart_ = std::thread([this] { KeepAlive(); });
+    RefuseRivals(shard, self, log);
   } catch (const std::system_error&) {
+    EndHeartbeat();
     Release();
     throw NoThreadError();
   } catch (...) {
+    EndHeartbeat();
     Release();
     throw;
   }
 }
 
 RunLock::~RunLock() {
+  EndHeartbeat();
+  Release();
+}
+
+void RunLock::EndHeartbeat() {
+  if (!heart_.joinable()) return;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     ending_ = true;
   }
   wake_.notify_all();
   heart_.join();
-  Release();
 }
 
 void RunLock::ThrowIfLost() const {
@@ -239,18 +167,20 @@ void RunLock::Release() {
 // only while they live.) Elsewhere two takers may both remove the file, the
 // later one the lock that the earlier one has made by then. So a taker waits
 // before he starts, longer than an owner needs to notice and stop.
-void RunLock::RemoveStale(const LockOwner& self, const LogSink& log) {
-  const FileDescriptor file(RetryCall(path_, [&] { return OpenLock(path_); }));
+void RunLock::RemoveStale(const fs::path& path,
+                          const LockOwner& self,
+                          const LogSink& log) {
+  const FileDescriptor file(RetryCall(path, [&] { return OpenLock(path); }));
   if (file.get() < 0) {
     if (errno == ENOENT) return;
-    ThrowCannotRead(path_, errno);
+    ThrowCannotRead(path, errno);
   }
   std::optional<std::string> contents;
   std::optional<LockOwner> owner;
   for (int i = 0; i <= kMaxTries && !owner; ++i) {
     if (i > 0) std::this_thread::sleep_for(kTryInterval);
-    contents = ReadAll(file.get());
-    if (!contents) ThrowCannotRead(path_, errno);
+    contents = ReadLock(file.get());
+    if (!contents) ThrowCannotRead(path, errno);
     owner = ParseLockOwner(*contents);
   }
   const bool is_local = rules_.is_local(file.get());
@@ -259,9 +189,9 @@ void RunLock::RemoveStale(const LockOwner& self, const LogSink& log) {
   const bool heartbeat_tells =
       owner && !flock_tells && !is_visible && owner->heartbeat;
   const auto throw_locked = [&] {
-    if (!IsSameFile(file.get(), path_)) return;
+    if (!IsSameFile(file.get(), path)) return;
     ThrowLocked(
-        path_,
+        path,
         *owner,
         heartbeat_tells
             ? fmt::format(" (it counts as gone {} seconds after its last sign "
@@ -272,8 +202,9 @@ void RunLock::RemoveStale(const LockOwner& self, const LogSink& log) {
             : "");
   };
   if (owner && !flock_tells) {
-    if (is_visible ? IsAlive(*owner)
-                   : !owner->heartbeat || ShowsSignOfLife(*contents, log)) {
+    if (is_visible
+            ? IsAlive(*owner)
+            : !owner->heartbeat || ShowsSignOfLife(path, *contents, log)) {
       return throw_locked();
     }
   }
@@ -291,11 +222,11 @@ void RunLock::RemoveStale(const LockOwner& self, const LogSink& log) {
   } else {
     may_have_rivals_ = true;
   }
-  const auto now = ReadLockFile(path_);
-  if (!now || now->contents != *contents || !IsSameFile(file.get(), path_))
+  const auto now = ReadLockFile(path);
+  if (!now || now->contents != *contents || !IsSameFile(file.get(), path))
     return;
-  if (unlink(path_.c_str()) != 0 && errno != ENOENT)
-    ThrowSystemError(path_, errno);
+  if (unlink(path.c_str()) != 0 && errno != ENOENT)
+    ThrowSystemError(path, errno);
   if (heartbeat_tells) {
     log(LogLevel::kWarning,
         fmt::format("the lock of another run ({}) is taken over, since that "
@@ -309,10 +240,11 @@ void RunLock::RemoveStale(const LockOwner& self, const LogSink& log) {
 }
 
 // Also true if nothing can be told.
-bool RunLock::ShowsSignOfLife(const std::string& contents,
+bool RunLock::ShowsSignOfLife(const fs::path& path,
+                              const std::string& contents,
                               const LogSink& log) const {
-  const auto first = ReadLockFile(path_);
-  const auto clock = FileSystemTime(path_.parent_path());
+  const auto first = ReadLockFile(path);
+  const auto clock = FileSystemTime(path.parent_path());
   if (!first || !clock || first->contents != contents) return true;
   const double age = 1e-9 * static_cast<double>(*clock - first->touched);
   const double expiry = std::chrono::duration<double>(rules_.expiry).count();
@@ -322,36 +254,26 @@ bool RunLock::ShowsSignOfLife(const std::string& contents,
       fmt::format(
           "{} is of a run that seems to be gone; watching it for {:.0f} "
           "seconds...",
-          path_.string(),
+          path.string(),
           std::chrono::duration<double>(rules_.watch).count()));
   Wait(rules_.watch);
-  const auto last = ReadLockFile(path_);
+  const auto last = ReadLockFile(path);
   return !last || last->contents != contents || last->touched != first->touched;
 }
 
-void ThrowIfLocked(const fs::path& state_path, const LockRules& rules) {
-  const fs::path path = state_path / "lock";
-  const FileDescriptor file(RetryCall(path, [&] { return OpenLock(path); }));
-  if (file.get() < 0 && errno == ENOENT) return;
-  const std::optional<std::string> contents =
-      file.get() < 0 ? std::nullopt : ReadAll(file.get());
-  if (!contents) ThrowCannotRead(path, errno);
-  const auto owner = ParseLockOwner(*contents);
-  if (!owner) return;
-  bool is_alive = true;
-  if (owner->flock && rules.is_local(file.get())) {
-    is_alive = TryFlock(file.get()) == Flock::kHeldByAnother;
-  } else if (IsVisible(*owner, ThisProcess())) {
-    is_alive = IsAlive(*owner);
-  } else if (owner->heartbeat) {
-    struct stat status = {};
-    const std::chrono::nanoseconds now =
-        std::chrono::system_clock::now().time_since_epoch();
-    is_alive = fstat(file.get(), &status) != 0 ||
-               std::abs(now.count() - ModifiedNanoseconds(status)) <
-                   std::chrono::nanoseconds(rules.expiry).count();
+// Throws Error(kLocked) if someone is at work who does not go with this run;
+// removes what the dead have left.
+void RunLock::RefuseRivals(const LockShard& shard,
+                           const LockOwner& self,
+                           const LogSink& log) {
+  std::error_code error;
+  for (const fs::path& rival : LocksAgainst(path_.parent_path(), shard)) {
+    if (rival == path_) continue;
+    for (int i = 0; fs::exists(fs::symlink_status(rival, error)); ++i) {
+      if (i == kMaxAttempts) ThrowOthersAreStarting(rival);
+      RemoveStale(rival, self, log);
+    }
   }
-  if (is_alive) ThrowLocked(path, *owner, "");
 }
 
 void RunLock::Wait(std::chrono::milliseconds time) const {
@@ -376,6 +298,41 @@ void RunLock::KeepAlive() {
       return;
     }
   }
+}
+
+namespace {
+
+void ThrowIfHeld(const fs::path& path, const LockRules& rules) {
+  const FileDescriptor file(RetryCall(path, [&] { return OpenLock(path); }));
+  if (file.get() < 0 && errno == ENOENT) return;
+  const std::optional<std::string> contents =
+      file.get() < 0 ? std::nullopt : ReadLock(file.get());
+  if (!contents) ThrowCannotRead(path, errno);
+  const auto owner = ParseLockOwner(*contents);
+  if (!owner) return;
+  bool is_alive = true;
+  if (owner->flock && rules.is_local(file.get())) {
+    is_alive = TryFlock(file.get()) == Flock::kHeldByAnother;
+  } else if (IsVisible(*owner, ThisProcess())) {
+    is_alive = IsAlive(*owner);
+  } else if (owner->heartbeat) {
+    struct stat status = {};
+    const std::chrono::nanoseconds now =
+        std::chrono::system_clock::now().time_since_epoch();
+    is_alive = fstat(file.get(), &status) != 0 ||
+               std::abs(now.count() - ModifiedNanoseconds(status)) <
+                   std::chrono::nanoseconds(rules.expiry).count();
+  }
+  if (is_alive) ThrowLocked(path, *owner, "");
+}
+
+}  // namespace
+
+void ThrowIfLocked(const fs::path& state_path,
+                   const LockShard& shard,
+                   const LockRules& rules) {
+  for (const fs::path& path : LocksAgainst(state_path, shard))
+    ThrowIfHeld(path, rules);
 }
 
 }  // namespace hpm

@@ -1,7 +1,9 @@
-// One run per workspace: stereo/hpm_mvs/lock names the run that works on it.
+// Who works on a workspace: one run on all of it (stereo/hpm_mvs/lock), or runs
+// on its shards, one on each (lock.0-of-3 and so on), all of the same division.
 #pragma once
 
 #include "colmap_plugin/workspace/file_system.h"
+#include "colmap_plugin/workspace/lock_file.h"
 #include "src/base/cancel.h"
 #include "src/base/log.h"
 #include "src/base/platform/files.h"
@@ -40,6 +42,8 @@ struct LockRules {
 // - else by its heartbeat, the time of the file against the clock of the file
 //   system. An owner that was stopped so long may wake: it notices (see stop,
 //   ThrowIfLost) and ends.
+// Who has made his file looks for those that exclude it; so of two who do not
+// go together one sees the other, whoever was first.
 class RunLock {
  public:
   // Throws Error(kLocked) naming host, process and remedy if another run (or
@@ -50,6 +54,7 @@ class RunLock {
   RunLock(const std::filesystem::path& state_path,
           const LogSink& log,
           CancelToken* stop,
+          const LockShard& shard = {},
           const LockRules& rules = {});
   ~RunLock();  // removes the file if it is still this lock's
   RunLock(const RunLock&) = delete;
@@ -64,10 +69,18 @@ class RunLock {
  private:
   // False: try again.
   bool TryCreate(LockOwner self, Retries* retries);
-  void RemoveStale(const LockOwner& self, const LogSink& log);
-  bool ShowsSignOfLife(const std::string& contents, const LogSink& log) const;
+  void RemoveStale(const std::filesystem::path& path,
+                   const LockOwner& self,
+                   const LogSink& log);
+  bool ShowsSignOfLife(const std::filesystem::path& path,
+                       const std::string& contents,
+                       const LogSink& log) const;
+  void RefuseRivals(const LockShard& shard,
+                    const LockOwner& self,
+                    const LogSink& log);
   void Wait(std::chrono::milliseconds time) const;
   void KeepAlive();
+  void EndHeartbeat();
   void Release();
 
   std::filesystem::path path_;
@@ -83,9 +96,11 @@ class RunLock {
   std::thread heart_;
 };
 
-// Throws Error(kLocked) if a run is at work, as far as can be told at once and
-// without changing anything, Error(kBadInput) if the lock cannot be read.
+// Throws Error(kLocked) if a run is at work that excludes one on the shard, as
+// far as can be told at once and without changing anything, Error(kBadInput) if
+// the lock cannot be read.
 void ThrowIfLocked(const std::filesystem::path& state_path,
+                   const LockShard& shard = {},
                    const LockRules& rules = {});
 
 }  // namespace hpm

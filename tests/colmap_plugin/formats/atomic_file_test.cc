@@ -391,6 +391,15 @@ TEST(AtomicFile, ALinkUnderTheFinalNameIsReplacedNotFollowed) {
   EXPECT_EQ(ReadFile(folder / "f"), "new");
 }
 
+std::string OwnersName() {
+  const ScratchFolder folder;
+  const AtomicFile file(folder / "f");
+  const std::string name =
+      std::filesystem::directory_iterator(folder.path())->path().filename();
+  const size_t begin = name.find(".tmp.") + 5;
+  return name.substr(begin, name.rfind('.') - begin);
+}
+
 TEST(RemoveStaleTemporaries, RemovesOnlyThoseOfDeadProcessesOfThisHost) {
   const ScratchFolder folder;
   const pid_t child = fork();
@@ -398,12 +407,16 @@ TEST(RemoveStaleTemporaries, RemovesOnlyThoseOfDeadProcessesOfThisHost) {
   ASSERT_GT(child, 0);
   ASSERT_EQ(waitpid(child, nullptr, 0), child);
   const std::string dead = std::to_string(child);
-  const std::string host = ThisHost();
+  // As this process's temporaries have it between ".tmp." and its id.
+  const std::string host = OwnersName();
   const std::string stale = "sub/a.bin.tmp." + host + "." + dead;
   const std::vector<std::string> kept = {
       "a.bin",
       "a.bin.tmp." + host + "." + std::to_string(getpid()),
       "a.bin.tmp.other-" + host + "." + dead,
+      // Of another machine or container with the same name.
+      "a.bin.tmp." + ThisHost() + ".00000000." + dead,
+      "a.bin.tmp." + ThisHost() + "." + dead,
       "a.bin.tmp." + host + "." + dead + "x",
       "a.bin.tmp." + host + ".",
       "a.bin.tmp." + host + ".-" + dead,

@@ -141,13 +141,16 @@ TEST(OptionTableTest, EveryMemberOfHpmOptionsIsAnOption) {
                keep_photometric,
                report,
                previews,
-               overwrite] = HpmOptions();
+               overwrite,
+               shard,
+               stage] = HpmOptions();
   (void)method, (void)device, (void)gpu_images, (void)cpu_target,
       (void)num_iterations, (void)num_geom_iterations;
   (void)num_geom_passes, (void)geom_weight, (void)geom_max_error,
       (void)num_levels, (void)filter_min_agreement;
   (void)report, (void)previews, (void)overwrite;
   (void)log_format, (void)keep_photometric;
+  (void)shard, (void)stage;
   (void)num_fine_iterations, (void)num_fine_geom_passes;
   (void)quality, (void)max_views, (void)weak_gradient;
   for (const char* name : {"method",
@@ -170,7 +173,9 @@ TEST(OptionTableTest, EveryMemberOfHpmOptionsIsAnOption) {
                            "keep_photometric",
                            "report",
                            "previews",
-                           "overwrite"}) {
+                           "overwrite",
+                           "shard",
+                           "stage"}) {
     EXPECT_NE(FindOption(std::string("Hpm.") + name), nullptr) << name;
   }
 }
@@ -293,6 +298,11 @@ const std::vector<Values>& ValueTable() {
       {"Hpm.mask_path", {"masks"}, {}, ""},
       bools("Hpm.previews"),
       bools("Hpm.overwrite"),
+      {"Hpm.shard",
+       {"0/1", "2/3", "99999/100000"},
+       {"3/3", "-1/3", "1", "1/", "/3", "1/3x", "0/0", "0/100001", " 0/1"},
+       "i/n with 0 <= i < n <= 100000"},
+      {"Hpm.stage", {"all", "finish", "level_1_photometric"}, {}, ""},
   };
   return values;
 }

@@ -67,7 +67,9 @@ bool IsGivenByTheTest(const OptionSpec& option) {
                                        "project_path",
                                        "workspace_format",
                                        "Hpm.mask_path",
-                                       "Hpm.depth_ranges"};
+                                       "Hpm.depth_ranges",
+                                       "Hpm.shard",
+                                       "Hpm.stage"};
   return names.count(option.name) > 0;
 }
 

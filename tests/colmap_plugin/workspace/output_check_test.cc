@@ -190,7 +190,7 @@ TEST_F(OutputCheckTest, MapBytesAreTheSizesOfTheFiles) {
 
 TEST(RunRecord, IsReadableJson) {
   const ScratchFolder state;
-  WriteRunRecord(state.path(), {{"images", 3}, {"name", "\xff"}});
+  WriteRunRecord(state.path(), "run.json", {{"images", 3}, {"name", "\xff"}});
   EXPECT_EQ(
       nlohmann::json::parse(ReadFile(state.path() / "run.json"))["images"], 3);
 }

@@ -1,6 +1,6 @@
 #include "colmap_plugin/workspace/run_lock.h"
 
-#include "tests/colmap_plugin/workspace/test_workspace.h"
+#include "tests/colmap_plugin/workspace/test_lock.h"
 
 #include <atomic>
 #include <csignal>
@@ -17,37 +17,12 @@ namespace {
 
 using testing::HasSubstr;
 
-// Waits of a fraction of a second instead of minutes.
-LockRules FastRules() {
-  LockRules rules;
-  rules.heartbeat = std::chrono::milliseconds(20);
-  rules.watch = std::chrono::milliseconds(200);
-  rules.settle = std::chrono::milliseconds(200);
-  return rules;
-}
-
 // As on a network file system, where no flock is trusted.
 LockRules FarRules() {
   LockRules rules = FastRules();
   rules.is_local = [](int) { return false; };
   return rules;
 }
-
-struct TestLock {
-  explicit TestLock(const std::filesystem::path& state,
-                    const LockRules& rules = FastRules())
-      : lock(
-            state,
-            [this](LogLevel level, const std::string& line) {
-              if (level == LogLevel::kWarning) warnings.push_back(line);
-            },
-            &stop,
-            rules) {}
-
-  std::vector<std::string> warnings;
-  CancelToken stop;
-  RunLock lock;
-};
 
 // The time of a file's last change, that many seconds ago.
 void SetAge(const std::filesystem::path& path, int seconds) {
@@ -56,34 +31,6 @@ void SetAge(const std::filesystem::path& path, int seconds) {
   times[0].tv_sec -= seconds;
   times[1] = times[0];
   ASSERT_EQ(utimensat(AT_FDCWD, path.c_str(), times, 0), 0);
-}
-
-// A child process that holds the lock until it is killed.
-pid_t ForkOwner(const std::filesystem::path& state,
-                const LockRules& rules = FastRules()) {
-  int ready[2];
-  if (pipe(ready) != 0) return -1;
-  const pid_t pid = fork();
-  if (pid == 0) {
-    try {
-      const TestLock lock(state, rules);
-      if (write(ready[1], "x", 1) == 1) {
-        for (;;) pause();
-      }
-    } catch (...) {
-    }
-    _exit(1);
-  }
-  close(ready[1]);
-  char byte;
-  const bool holds = read(ready[0], &byte, 1) == 1;
-  close(ready[0]);
-  return holds ? pid : -1;
-}
-
-void Kill(pid_t pid) {
-  kill(pid, SIGKILL);
-  waitpid(pid, nullptr, 0);
 }
 
 class RunLockTest : public ::testing::Test {
@@ -313,7 +260,7 @@ TEST_F(FarLockTest, WaitingCanBeInterrupted) {
   stop.Cancel();
   const auto error = ErrorOf([&] {
     RunLock second(
-        state(), [](LogLevel, const std::string&) {}, &stop, rules);
+        state(), [](LogLevel, const std::string&) {}, &stop, {}, rules);
   });
   ASSERT_TRUE(error);
   EXPECT_EQ(error->code(), ErrorCode::kInterrupted);
@@ -326,21 +273,21 @@ TEST_F(RunLockTest, LookingTellsWhoIsAtWorkAndChangesNothing) {
     const pid_t owner = ForkOwner(state(), rules);
     ASSERT_GT(owner, 0);
     const std::string contents = ReadFile(lock());
-    const auto error = ErrorOf([&] { ThrowIfLocked(state(), rules); });
+    const auto error = ErrorOf([&] { ThrowIfLocked(state(), {}, rules); });
     Kill(owner);
     ASSERT_TRUE(error);
     EXPECT_EQ(error->code(), ErrorCode::kLocked);
     EXPECT_THAT(error->what(), HasSubstr(std::to_string(owner)));
-    EXPECT_NO_THROW(ThrowIfLocked(state(), rules));
+    EXPECT_NO_THROW(ThrowIfLocked(state(), {}, rules));
     EXPECT_EQ(ReadFile(lock()), contents);
   }
 }
 
 TEST_F(FarLockTest, LookingTakesALongSilenceForTheEnd) {
   WriteForeignLock(10);
-  EXPECT_TRUE(ErrorOf([&] { ThrowIfLocked(state(), FarRules()); }));
+  EXPECT_TRUE(ErrorOf([&] { ThrowIfLocked(state(), {}, FarRules()); }));
   SetAge(lock(), 4000);
-  EXPECT_FALSE(ErrorOf([&] { ThrowIfLocked(state(), FarRules()); }));
+  EXPECT_FALSE(ErrorOf([&] { ThrowIfLocked(state(), {}, FarRules()); }));
 }
 
 TEST_F(RunLockTest, TheLockIsTouchedWhileItIsHeld) {

@@ -1,0 +1,28 @@
+// Images that decoding found damaged, by their contents:
+// stereo/hpm_mvs/unreadable_images/<hash>. Whoever plans afterwards knows it
+// from the start, so that all shards of a run plan the same.
+#pragma once
+
+#include "colmap_plugin/controller/image_contents.h"
+#include "colmap_plugin/workspace/workspace.h"
+#include "src/base/cancel.h"
+
+#include <string>
+#include <vector>
+
+namespace hpm {
+
+// why: one line for people.
+void RecordUnreadable(const Workspace& workspace,
+                      const ImageContents& contents,
+                      int image,
+                      const std::string& why);
+
+// Marks images with such contents as without picture and returns what is wrong
+// with them, one line each. Reads all images if there is any record. Throws
+// Error(kInterrupted).
+std::vector<std::string> DropUnreadable(Workspace* workspace,
+                                        ImageContents* contents,
+                                        const CancelToken& cancel);
+
+}  // namespace hpm
