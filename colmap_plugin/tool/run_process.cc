@@ -52,10 +52,13 @@ RunSummary RunStereo(const ControllerOptions& options,
   const RunSummary summary =
       PatchMatchController(options, log, progress, cancel).Run();
   if (!options.hpm.report) return summary;
+  const RunShare share(options.hpm);
+  // Other processes are still at work.
+  if (!share.IsWhole() && !share.Finishes()) return summary;
   try {
     // Where nothing happened the page of the run before is still right.
-    if (summary.num_computed == 0 && summary.failed.empty() &&
-        Exists(ReportPath(options))) {
+    if (!share.Finishes() && summary.num_computed == 0 &&
+        summary.failed.empty() && Exists(ReportPath(options))) {
       return summary;
     }
     // What is wrong with the workspace was said by the run.

@@ -152,6 +152,15 @@ class Shards(CliTest):
         self.assert_same_maps(map_files(self.dense), expected)
         self.assert_no_partial_files(self.dense)
 
+    def test_the_report_comes_with_the_end(self):
+        report = self.dense / "stereo/report.html"
+        for stage in self.stages():
+            self.run_share("0/1", stage, 0, "--Hpm.report=1")
+            self.assertFalse(report.exists())
+        report.write_text("of another day")
+        self.run_share("0/1", "finish", 0, "--Hpm.report=1")
+        self.assertIn("view00.png", report.read_text())
+
     def test_the_lock_names_the_job(self):
         environment = {**os.environ, "SLURM_JOB_ID": "4711", "SLURM_ARRAY_TASK_ID": "0"}
         log = open(self.dense / "log.txt", "wb")
