@@ -109,6 +109,8 @@ void FileMapStore::Write(int stage, int problem, StageOutput* output) {
   const int image = problems_[problem].ref_image;
   const std::string& name = workspace_.ImageName(image);
   const std::string stage_name = plan_.NameOf(stage, image);
+  // Rated only, so that nothing was lost.
+  if (output->keep.empty()) output->consistent = std::vector<uint32_t>();
   if (!output->consistent.empty()) {
     PhaseTimer timer(&output->seconds, "filter");
     result.losses = CountFilterLosses(output->views,
@@ -165,10 +167,13 @@ void FileMapStore::WriteFiles(int stage,
   if (plan_.IsPublic(stage, image)) {
     std::error_code ignored;
     std::filesystem::remove(files.graph, ignored);
+    std::filesystem::remove(files.confidence, ignored);
   }
   RetryWriting([&] { WriteMaps(stage, problem, output, stamp, result); });
   if (plan_.WritesGraph(stage, image))
     stamp->files["graph"] = WriteGraph(stage, problem, output);
+  if (plan_.WritesConfidence(stage, image))
+    stamp->files["confidence"] = WriteConfidence(files, output);
   if (options_.hpm.previews && output.is_final) {
     WritePreviews(workspace_.StereoPath() / "previews",
                   workspace_.ImageName(image),
@@ -209,6 +214,15 @@ void FileMapStore::WriteMaps(int stage,
     result->losses[FilterCriterion::kRange] =
         static_cast<double>(written.num_dropped) / size;
   }
+}
+
+PublishedFile FileMapStore::WriteConfidence(const StageFiles& files,
+                                            const StageOutput& output) {
+  Map confidence = ReadMap(files.depth);
+  for (size_t i = 0; i < confidence.data.size(); ++i) {
+    if (confidence.data[i] != 0) confidence.data[i] = output.confidence[i];
+  }
+  return WriteMap(files.confidence, confidence);
 }
 
 PublishedFile FileMapStore::WriteGraph(int stage,

@@ -46,6 +46,9 @@ class FileMapStore : public MapStore {
                  const StageOutput& output,
                  Stamp* stamp,
                  StageResult* result);
+  // 0 where the depth map has none.
+  static PublishedFile WriteConfidence(const StageFiles& files,
+                                       const StageOutput& output);
   PublishedFile WriteGraph(int stage,
                            int problem,
                            const StageOutput& output) const;

@@ -78,6 +78,18 @@ std::string DepthPreview(const Map& depth, int quality) {
   return EncodeJpeg(ColorDepth(depth), quality);
 }
 
+std::string ConfidencePreview(const Map& confidence, int quality) {
+  const cv::Mat values(confidence.height,
+                       confidence.width,
+                       CV_32F,
+                       const_cast<float*>(confidence.data.data()));
+  cv::Mat level, color;
+  values.convertTo(level, CV_8U, 255);
+  cv::applyColorMap(level, color, cv::COLORMAP_VIRIDIS);
+  color.setTo(cv::Scalar::all(0), values == 0);
+  return EncodeJpeg(color, quality);
+}
+
 std::string NormalPreview(const Map& normal, int quality) {
   return EncodeJpeg(ColorNormals(normal), quality);
 }

@@ -19,5 +19,7 @@ void WritePreviews(const std::filesystem::path& folder,
 // The same pictures as the bytes of JPEG files.
 std::string DepthPreview(const Map& depth, int quality);
 std::string NormalPreview(const Map& normal, int quality);
+// 0 dark blue, 1 yellow, black = no depth.
+std::string ConfidencePreview(const Map& confidence, int quality);
 
 }  // namespace hpm

@@ -77,7 +77,7 @@ MemoryNeeds LargestNeeds(const Workspace& workspace,
       decoded = std::max(decoded, DecodedBytes(workspace, src));
       inputs += pixels_of(src) * (geometric ? 1 + kInverseDepthBytes : 1);
     }
-    // For previews, consistency graphs and cuts to a range.
+    // For previews, consistency graphs, confidence and cuts to a range.
     const uint64_t maps_read_back = ref_pixels * 4 * sizeof(float);
     for (const Backend* backend : backends) {
       const uint64_t matching = backend->MemoryNeeded(
@@ -149,7 +149,12 @@ uint64_t BytesToWrite(const std::vector<StereoProblem>& problems,
   for (int s = 0; s < static_cast<int>(plan.stages().size()); ++s) {
     for (int p = 0; p < static_cast<int>(problems.size()); ++p) {
       if (!plan.IsNeeded(s, p)) continue;
-      bytes += DepthAndNormalMapBytes(plan.CameraOf(s, problems[p].ref_image));
+      const int image = problems[p].ref_image;
+      const Camera camera = plan.CameraOf(s, image);
+      bytes += DepthAndNormalMapBytes(camera);
+      if (plan.WritesConfidence(s, image))
+        bytes +=
+            sizeof(float) * static_cast<uint64_t>(camera.width) * camera.height;
     }
   }
   return bytes;

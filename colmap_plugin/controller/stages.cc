@@ -226,11 +226,13 @@ StageFiles StagePlan::Files(int s, int image) const {
   if (IsPublic(s, image)) {
     return {workspace_.MapPath(image, MapKind::kDepth, stage),
             workspace_.MapPath(image, MapKind::kNormal, stage),
-            workspace_.MapPath(image, MapKind::kConsistencyGraph, stage)};
+            workspace_.MapPath(image, MapKind::kConsistencyGraph, stage),
+            workspace_.MapPath(image, MapKind::kConfidence, stage)};
   }
   const std::filesystem::path folder = workspace_.StatePath() / stage;
   const std::string& name = workspace_.ImageName(image);
-  return {folder / (name + ".depth.bin"), folder / (name + ".normal.bin"), {}};
+  return {
+      folder / (name + ".depth.bin"), folder / (name + ".normal.bin"), {}, {}};
 }
 
 std::string StagePlan::FingerprintOnDisk(int s, int image) const {
@@ -279,6 +281,10 @@ bool StagePlan::WritesGraph(int s, int image) const {
   return options_.patch_match.write_consistency_graph && IsPublic(s, image);
 }
 
+bool StagePlan::WritesConfidence(int s, int image) const {
+  return options_.hpm.confidence && stages_[s].is_final && IsPublic(s, image);
+}
+
 StagePlan::Found StagePlan::Look(int s, int p, bool may_be_cut) const {
   const int image = problems_[p].ref_image;
   const StageFiles files = Files(s, image);
@@ -313,6 +319,7 @@ bool StagePlan::AreIntact(
   std::map<std::string, std::filesystem::path> wanted = {
       {"depth", files.depth}, {"normal", files.normal}};
   if (WritesGraph(s, image)) wanted["graph"] = files.graph;
+  if (WritesConfidence(s, image)) wanted["confidence"] = files.confidence;
   std::optional<std::string>& since = stamp->unsynced_since;
   const bool may_be_lost =
       is_read && since && (since->empty() || *since != BootId());

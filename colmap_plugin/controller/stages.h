@@ -37,7 +37,7 @@ struct Stage {
 std::string NameForSources(const Stage& stage);
 
 struct StageFiles {
-  std::filesystem::path depth, normal, graph;
+  std::filesystem::path depth, normal, graph, confidence;
 };
 
 // What was found of the maps of a stage of an image.
@@ -129,6 +129,7 @@ class StagePlan {
     return LevelCamera(workspace_.camera(image), stages_[s].spec.level);
   }
   bool WritesGraph(int s, int image) const;
+  bool WritesConfidence(int s, int image) const;
 
  private:
   struct Found {

@@ -60,11 +60,12 @@ class Checker {
       for (const StereoProblem& problem : problems_) {
         const StageFiles files =
             plan_.Files(static_cast<int>(s), problem.ref_image);
-        known_.insert({files.depth, files.normal, files.graph});
+        known_.insert(
+            {files.depth, files.normal, files.graph, files.confidence});
       }
     }
     for (const char* folder :
-         {"depth_maps", "normal_maps", "consistency_graphs"})
+         {"depth_maps", "normal_maps", "consistency_graphs", "confidence_maps"})
       CheckOthers(folder, &all);
     CheckOtherStamps(&all);
     return all;
@@ -124,6 +125,8 @@ class Checker {
         return FaultOfDepths(path, range);
       case MapKind::kNormal:
         return FaultOfNormals(path);
+      case MapKind::kConfidence:
+        return FaultOfConfidence(path);
       case MapKind::kConsistencyGraph:
         break;
     }
@@ -246,6 +249,10 @@ class Checker {
          MapKind::kConsistencyGraph,
          files.graph,
          plan_.WritesGraph(s, image));
+    look("confidence",
+         MapKind::kConfidence,
+         files.confidence,
+         plan_.WritesConfidence(s, image));
 
     if (has_fault) return;  // was told
     if (!CanBeComputed(workspace_, problem)) {
@@ -293,6 +300,7 @@ class Checker {
     MapKind kind = MapKind::kConsistencyGraph;
     if (folder == "depth_maps") kind = MapKind::kDepth;
     if (folder == "normal_maps") kind = MapKind::kNormal;
+    if (folder == "confidence_maps") kind = MapKind::kConfidence;
     for (const fs::path& path : FilesBelow(root, ".bin", check)) {
       if (known_.count(path) > 0) continue;
       cancel_.ThrowIfCancelled();

@@ -5,6 +5,7 @@
 #include "colmap_plugin/formats/image_name.h"
 #include "colmap_plugin/formats/map_file.h"
 #include "src/base/error.h"
+#include "src/base/retries.h"
 
 #include <algorithm>
 #include <cmath>
@@ -68,6 +69,15 @@ std::string NormalAsPng(const Map& normal) {
       to[2 - axis] = cv::saturate_cast<uint16_t>(
           32768 + 32767 * std::clamp(at[axis * size], -1.0f, 1.0f));
     }
+  }
+  return EncodePng(image);
+}
+
+std::string ConfidenceAsPng(const Map& confidence) {
+  cv::Mat image(confidence.height, confidence.width, CV_16U);
+  for (size_t i = 0; i < confidence.data.size(); ++i) {
+    image.ptr<uint16_t>()[i] = cv::saturate_cast<uint16_t>(
+        kMostSteps * static_cast<double>(confidence.data[i]));
   }
   return EncodePng(image);
 }
@@ -203,6 +213,16 @@ void ExportImage(const Workspace& workspace,
                         Encode(depth, options.format));
     WriteFileAtomically(folder / (name + ".normal" + end),
                         Encode(normal, options.format));
+  }
+  const fs::path confidence_path =
+      workspace.MapPath(image, MapKind::kConfidence, options.input_type);
+  if (Exists(confidence_path)) {
+    const Map confidence = ReadMap(confidence_path);
+    WriteFileAtomically(
+        folder / (name + ".confidence." +
+                  (options.format == "png16" ? "png" : options.format)),
+        options.format == "png16" ? ConfidenceAsPng(confidence)
+                                  : Encode(confidence, options.format));
   }
   WriteFileAtomically(
       folder / (name + ".json"),

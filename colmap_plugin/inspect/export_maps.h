@@ -26,7 +26,8 @@ struct ExportResult {
   std::vector<std::string> failed;  // one line each, with reason and remedy
 };
 
-// Writes <output_path>/<image name>.depth.<ext> and .normal.<ext>, or
+// Writes <output_path>/<image name>.depth.<ext>, .normal.<ext> and, where there
+// is one, .confidence.<ext>, or
 // <image name>.ply, and for all but ply <image name>.json, which says what the
 // numbers mean and which camera they belong to. Throws Error(kBadInput) if no
 // image has maps or the one that is asked for has none.

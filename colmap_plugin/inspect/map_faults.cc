@@ -91,6 +91,13 @@ std::string FaultOfNormals(const std::filesystem::path& path) {
   });
 }
 
+std::string FaultOfConfidence(const std::filesystem::path& path) {
+  return FirstFault(path, 1, [](const float* value) -> std::string {
+    if (*value >= 0 && *value <= 1) return "";
+    return fmt::format("the confidence {} is not in 0 ... 1", *value);
+  });
+}
+
 std::string FaultOfGraph(const std::filesystem::path& path, int num_images) {
   try {
     const ConsistencyGraph graph = ReadConsistencyGraph(path);

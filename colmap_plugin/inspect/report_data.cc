@@ -102,6 +102,7 @@ class Gatherer {
         ReportedImage& hidden = data_->images[shown[i]];
         hidden.depth.clear();
         hidden.normal.clear();
+        hidden.confidence.clear();
       }
       shown.resize(kMaxPictured);
     }
@@ -198,6 +199,10 @@ class Gatherer {
       to->depths = SpanOf(depth.data);
       to->depth = DepthThumbnail(depth);
       to->normal = NormalThumbnail(normal);
+      const auto confidence =
+          workspace_.MapPath(image, MapKind::kConfidence, data_->stage);
+      if (std::filesystem::exists(confidence, ignored))
+        to->confidence = ConfidenceThumbnail(ReadThinned(confidence));
       to->has_maps = true;
       if (!to->valid_share) {
         to->valid_share =

@@ -40,7 +40,7 @@ struct ReportedImage {
   // All but the extreme two percent: of the map, and of the sparse points.
   std::optional<DepthSpan> depths, sparse_depths;
   // JPEG files; empty where there is none, or too many images to show all.
-  std::string picture, depth, normal;
+  std::string picture, depth, normal, confidence;
 
   // Whether the depths reach far beyond what the sparse points let expect.
   bool HasOddRange() const {

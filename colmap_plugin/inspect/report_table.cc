@@ -112,7 +112,7 @@ std::string Sources(const ReportedImage& image) {
       "<details><summary>{}</summary>{}</details>", image.sources.size(), list);
 }
 
-std::string Row(const ReportedImage& image) {
+std::string Row(const ReportedImage& image, bool with_confidence) {
   uint64_t num_shared = 0;
   for (const ReportedSource& source : image.sources)
     num_shared += source.num_shared;
@@ -126,9 +126,12 @@ std::string Row(const ReportedImage& image) {
       Html(image.name),
       image.width,
       image.height);
-  for (const auto& [jpeg, what] : {std::pair(&image.picture, "image"),
-                                   std::pair(&image.depth, "depth"),
-                                   std::pair(&image.normal, "normals")}) {
+  std::vector<std::pair<const std::string*, const char*>> pictures = {
+      {&image.picture, "image"},
+      {&image.depth, "depth"},
+      {&image.normal, "normals"}};
+  if (with_confidence) pictures.push_back({&image.confidence, "confidence"});
+  for (const auto& [jpeg, what] : pictures) {
     row += fmt::format(
         "<td data-v=\"{}\">{}</td>", jpeg->empty() ? 0 : 1, Image(*jpeg, what));
   }
@@ -170,19 +173,25 @@ std::string Table(const ReportData& data) {
         data.images.size());
   }
   html += "<table id=\"images\"><thead><tr><th>image</th>";
-  for (const char* heading : {"picture",
-                              "depth",
-                              "normals",
-                              "with depth",
-                              "pixels",
-                              "sources",
-                              "shared points",
-                              "depth range",
-                              "time"}) {
+  const bool with_confidence = std::any_of(
+      data.images.begin(), data.images.end(), [](const ReportedImage& image) {
+        return !image.confidence.empty();
+      });
+  std::vector<const char*> headings = {"picture", "depth", "normals"};
+  if (with_confidence) headings.push_back("confidence");
+  headings.insert(headings.end(),
+                  {"with depth",
+                   "pixels",
+                   "sources",
+                   "shared points",
+                   "depth range",
+                   "time"});
+  for (const char* heading : headings) {
     html += fmt::format("<th data-n>{}</th>", heading);
   }
   html += "</tr></thead><tbody>\n";
-  for (const ReportedImage& image : data.images) html += Row(image);
+  for (const ReportedImage& image : data.images)
+    html += Row(image, with_confidence);
   return html + "</tbody></table>\n";
 }
 

@@ -56,6 +56,10 @@ std::string NormalThumbnail(const Map& thinned) {
   return NormalPreview(thinned, kQuality);
 }
 
+std::string ConfidenceThumbnail(const Map& thinned) {
+  return ConfidencePreview(thinned, kQuality);
+}
+
 std::string PictureThumbnail(const std::filesystem::path& path) {
   cv::Mat image;
   std::vector<unsigned char> bytes;

@@ -18,6 +18,7 @@ Map ReadThinned(const std::filesystem::path& path);
 // JPEG files.
 std::string DepthThumbnail(const Map& thinned);
 std::string NormalThumbnail(const Map& thinned);
+std::string ConfidenceThumbnail(const Map& thinned);
 // Empty if the file cannot be decoded.
 std::string PictureThumbnail(const std::filesystem::path& path);
 

@@ -36,7 +36,7 @@ ScheduleOptions MakeScheduleOptions(const ControllerOptions& given) {
 std::optional<MapFilter> MakeMapFilter(const ControllerOptions& options) {
   constexpr double kRadiansPerDegree = 3.14159265358979323846 / 180;
   const PatchMatchStereoOptions& colmap = options.patch_match;
-  if (!colmap.filter) return std::nullopt;
+  if (!colmap.filter && !options.hpm.confidence) return std::nullopt;
   MapFilter filter;
   filter.params = {static_cast<float>(colmap.filter_min_ncc),
                    static_cast<float>(colmap.filter_min_triangulation_angle *
@@ -44,6 +44,8 @@ std::optional<MapFilter> MakeMapFilter(const ControllerOptions& options) {
                    static_cast<float>(colmap.filter_geom_consistency_max_cost),
                    colmap.filter_min_num_consistent};
   filter.min_agreement = options.hpm.filter_min_agreement;
+  filter.drops = colmap.filter;
+  filter.rates = options.hpm.confidence;
   return filter;
 }
 

@@ -155,6 +155,9 @@ std::vector<OptionSpec> MakeTable() {
       Hpm(kExpert, kNothing, "stage", &H::stage, Anything(),
           "Work only on this stage; its maps of the stage before must be there (exit 8 if not). `hpm_mvs status` names "
           "the stages; finish: computes nothing, removes what only other stages needed"),
+      Hpm(kCommon, kNothing, "confidence", &H::confidence, Anything(),
+          "Write stereo/confidence_maps: per pixel the probability, 0 to 1, that its depth is within 1 % of the truth "
+          "(docs/confidence.md)"),
       Hpm(kCommon, kNothing, "previews", &H::previews, Anything(),
           "Write colour pictures of the maps to stereo/previews"),
       HpmProblems(kCommon, kInputs, "depth_ranges", &I::depth_ranges, Anything(),

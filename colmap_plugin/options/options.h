@@ -64,8 +64,9 @@ struct HpmOptions {
   std::string log_format = "text";  // or json: one object a line
   bool keep_photometric = true;     // 0: only *.geometric.bin are published
   bool report = true;               // stereo/report.html at the end of a run
-  bool previews = false;   // colour pictures of the maps in stereo/previews
-  bool overwrite = false;  // recompute maps that are complete
+  bool confidence = false;  // stereo/confidence_maps beside the final maps
+  bool previews = false;    // colour pictures of the maps in stereo/previews
+  bool overwrite = false;   // recompute maps that are complete
   // Which part of the work this process does, see run_share.h.
   std::string shard = "0/1";
   std::string stage = "all";

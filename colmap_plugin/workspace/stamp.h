@@ -19,7 +19,8 @@ namespace hpm {
 
 struct Stamp {
   std::string fingerprint;
-  std::map<std::string, PublishedFile> files;  // "depth", "normal", "graph"
+  std::map<std::string, PublishedFile>
+      files;  // "depth", "normal", "graph", "confidence"
   // An object (or null); its members stand beside the others.
   nlohmann::json statistics = nullptr;
   // Of maps that were not synced to the disk: UnsyncedSince() of

@@ -153,6 +153,7 @@ fs::path Workspace::MapPath(int index,
   const char* folder = "consistency_graphs";
   if (kind == MapKind::kDepth) folder = "depth_maps";
   if (kind == MapKind::kNormal) folder = "normal_maps";
+  if (kind == MapKind::kConfidence) folder = "confidence_maps";
   return StereoPath() / folder / (ImageName(index) + "." + stage + ".bin");
 }
 

@@ -32,7 +32,7 @@ bool IsPmvs(const WorkspaceOptions& options);
 // WS/stereo or WS/stereo-<option name>.
 std::filesystem::path StereoPath(const WorkspaceOptions& options);
 
-enum class MapKind { kDepth, kNormal, kConsistencyGraph };
+enum class MapKind { kDepth, kNormal, kConsistencyGraph, kConfidence };
 
 class Workspace {
  public:

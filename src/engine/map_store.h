@@ -34,12 +34,14 @@ struct StageOutput {
   // False if some map that the stage read should have been there and was not,
   // see SourceDepth: good enough to go on with, not what the whole run gives.
   bool is_complete = true;
-  // Of a filtered map, else empty: bit j is set where source j confirms the
-  // pixel.
+  // Of a filtered or rated map, else empty: bit j is set where source j
+  // confirms the pixel.
   std::vector<uint32_t> consistent;
   // Of a filtered map and one of an image with gaps, else empty: whether the
   // pixel stays.
   std::vector<bool> keep;
+  // Of a map that was rated, else empty; see confidence.h.
+  std::vector<float> confidence;
   FilterParams filter = {};          // as it was asked of this problem
   bool filter_is_geometric = false;  // it looked at the sources' depth, too
   double cost_evaluations_per_pixel = 0;

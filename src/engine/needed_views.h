@@ -1,4 +1,4 @@
-// How many sources must confirm a pixel of a finished map.
+// How many sources must confirm a pixel of a finished map, and how many can.
 #pragma once
 
 #include "src/core/consistency_filter.h"
@@ -27,12 +27,12 @@ class NeededViews {
   // Of pixel row * width + col.
   int At(size_t at) const;
 
- private:
   // Sources into whose image the pixel falls, from whose side its plane is
   // seen, at a sufficient angle and with nothing clearly nearer in between;
   // after geometric passes those with a depth map: no other can confirm it.
   int CountSeeing(size_t at) const;
 
+ private:
   const ViewSet& views_;
   const HypothesisMap& map_;
   const int min_num_consistent_;

@@ -16,12 +16,15 @@ struct MapFilter {
   // Of fewer sources than min_num_consistent all must confirm a pixel.
   FilterParams params;
   double min_agreement = 0.5;  // see needed_views.h
+  bool drops = true;           // false: all pixels stay
+  bool rates = false;          // tells the confidence in each pixel
 };
 
 struct RunSpec {
   Schedule schedule;
   MethodParams params;
-  std::optional<MapFilter> filter;  // none: all pixels stay
+  std::optional<MapFilter>
+      filter;  // none: all pixels stay, and nothing is asked
   std::vector<Problem> problems;
 };
 

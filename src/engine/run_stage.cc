@@ -1,5 +1,6 @@
 #include "src/engine/run_stage.h"
 
+#include "src/engine/confidence.h"
 #include "src/engine/needed_views.h"
 #include "src/engine/phase_timer.h"
 #include "src/prior/upsample_prior.h"
@@ -116,6 +117,9 @@ void Filter(const MapFilter& filter,
                            output->filter,
                            filter.min_agreement,
                            output->filter_is_geometric);
+  if (filter.rates)
+    output->confidence = Confidence(needed, map, output->consistent);
+  if (!filter.drops) return;
   output->keep.resize(output->consistent.size());
   for (size_t i = 0; i < output->keep.size(); ++i) {
     const int num = __builtin_popcount(output->consistent[i]);

@@ -140,6 +140,7 @@ TEST(OptionTableTest, EveryMemberOfHpmOptionsIsAnOption) {
                log_format,
                keep_photometric,
                report,
+               confidence,
                previews,
                overwrite,
                shard,
@@ -150,7 +151,7 @@ TEST(OptionTableTest, EveryMemberOfHpmOptionsIsAnOption) {
       (void)num_levels, (void)filter_min_agreement;
   (void)report, (void)previews, (void)overwrite;
   (void)log_format, (void)keep_photometric;
-  (void)shard, (void)stage;
+  (void)shard, (void)stage, (void)confidence;
   (void)num_fine_iterations, (void)num_fine_geom_passes;
   (void)quality, (void)max_views, (void)weak_gradient;
   for (const char* name : {"method",
@@ -172,6 +173,7 @@ TEST(OptionTableTest, EveryMemberOfHpmOptionsIsAnOption) {
                            "log_format",
                            "keep_photometric",
                            "report",
+                           "confidence",
                            "previews",
                            "overwrite",
                            "shard",
@@ -296,6 +298,7 @@ const std::vector<Values>& ValueTable() {
       {"Hpm.depth_ranges", {"ranges.txt"}, {}, ""},
       bools("Hpm.report"),
       {"Hpm.mask_path", {"masks"}, {}, ""},
+      bools("Hpm.confidence"),
       bools("Hpm.previews"),
       bools("Hpm.overwrite"),
       {"Hpm.shard",
