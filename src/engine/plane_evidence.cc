@@ -12,20 +12,6 @@ constexpr float kShift = 2;  // pixels in the median view
 // Pixels of the lattice, so that a region has enough of itself to show.
 constexpr int kMinInner = 50;
 
-// Pixels per unit of -1/z; half the views that see depth at all have more. 0
-// if none does: all look from where the reference does.
-float MedianParallax(const ViewSet& views) {
-  std::vector<float> all;
-  for (const View& src : views.srcs) {
-    const float parallax = Parallax(views.ref, src);
-    if (parallax > 0) all.push_back(parallax);
-  }
-  if (all.empty()) return 0;
-  const auto middle = all.begin() + static_cast<ptrdiff_t>(all.size() / 2);
-  std::nth_element(all.begin(), middle, all.end());
-  return *middle;
-}
-
 // 1/z + shift everywhere.
 Plane Moved(const Plane& plane, float shift) {
   const Vec3f scaled = (1 / plane.distance) * plane.normal - Vec3f{0, 0, shift};

@@ -118,7 +118,7 @@ void Filter(const MapFilter& filter,
                            filter.min_agreement,
                            output->filter_is_geometric);
   if (filter.rates)
-    output->confidence = Confidence(needed, map, output->consistent);
+    output->confidence = Confidence(views, needed, map, output->consistent);
   if (!filter.drops) return;
   output->keep.resize(output->consistent.size());
   for (size_t i = 0; i < output->keep.size(); ++i) {

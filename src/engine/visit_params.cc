@@ -17,6 +17,18 @@ float Parallax(const ViewSet& views) {
   return parallax;
 }
 
+float MedianParallax(const ViewSet& views) {
+  std::vector<float> all;
+  for (const View& src : views.srcs) {
+    const float parallax = Parallax(views.ref, src);
+    if (parallax > 0) all.push_back(parallax);
+  }
+  if (all.empty()) return 0;
+  const auto middle = all.begin() + static_cast<ptrdiff_t>(all.size() / 2);
+  std::nth_element(all.begin(), middle, all.end());
+  return *middle;
+}
+
 PatchShape ShapeOf(const MethodParams& params) {
   return MakePatchShape(params.patch_radius,
                         params.sigma_spatial,

@@ -41,7 +41,7 @@ class ConfidenceTest : public testing::Test {
     const NeededViews needed(
         views_, map_, {-1, 0, 1, 2}, 0.5, /*geometric=*/false);
     const std::vector<uint32_t> all(map_.planes.size(), consistent);
-    return Confidence(needed, map_, all)[20];
+    return Confidence(views_, needed, map_, all)[20];
   }
 
   ViewSet views_;
@@ -72,6 +72,12 @@ TEST_F(ConfidenceTest, BadMatchesAndUnexplainedRegionsAreTrustedLess) {
   map_.costs.assign(map_.costs.size(), 0.2f);
   map_.unexplained.assign(map_.planes.size(), true);
   EXPECT_LT(Of(0b111), good);
+}
+
+TEST_F(ConfidenceTest, ViewsFurtherApartTellDepthBetter) {
+  const float near = Of(0b111);
+  for (View& src : views_.srcs) src.camera.t.x *= 2;
+  EXPECT_GT(Of(0b111), near);
 }
 
 TEST_F(ConfidenceTest, NothingIsInfiniteOrNotANumber) {
