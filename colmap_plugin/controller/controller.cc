@@ -10,6 +10,7 @@
 #include "colmap_plugin/controller/run_setup.h"
 #include "colmap_plugin/controller/run_share.h"
 #include "colmap_plugin/controller/run_statistics.h"
+#include "colmap_plugin/controller/share_checks.h"
 #include "colmap_plugin/controller/thread_supply.h"
 #include "colmap_plugin/controller/unreadable_images.h"
 #include "colmap_plugin/formats/atomic_file.h"
@@ -99,12 +100,6 @@ void ForgetMaps(const Workspace& workspace,
   }
   // Those of images that become problems when the run is planned anew, too.
   RemoveInnerMaps(workspace);
-}
-
-std::vector<std::string> NamesOf(const std::vector<Stage>& stages) {
-  std::vector<std::string> names;
-  for (const Stage& stage : stages) names.push_back(stage.name);
-  return names;
 }
 
 // What came from such images is stamped as incomplete.
@@ -197,12 +192,6 @@ RunSummary PatchMatchController::Run() {
 
   const RetryScope retries(log_, &cancel_);
   const RunShare share(options_.hpm);
-  if (options_.hpm.overwrite && !share.IsWhole()) {
-    throw Error(ErrorCode::kUsage,
-                "--Hpm.overwrite 1 goes with all shards and stages only; to "
-                "make all maps anew, delete the folder stereo/hpm_mvs/stamps "
-                "of the workspace before");
-  }
 
   log_(LogLevel::kInfo, "Reading workspace...");
   Workspace workspace(options_.workspace, log_, cancel_);
@@ -229,13 +218,7 @@ RunSummary PatchMatchController::Run() {
   SetLevels(workspace, &options_);
   const Schedule schedule = MakeSchedule(MakeScheduleOptions(options_));
   StagePlan plan(workspace, problems, schedule, options_, &contents, stop);
-  share.CheckStage(NamesOf(plan.stages()));
-  if (share.Finishes() && plan.num_open() > 0) {
-    throw Error(kNotReady,
-                fmt::format("{} maps are still to be made, so there is nothing "
-                            "to finish; hpm_mvs status tells of which stages",
-                            plan.num_open()));
-  }
+  CheckShare(share, plan);
   PrepareOutputs(workspace, problems, BytesToWrite(problems, plan), log_);
   AnnouncePlan(problems, plan, options_, log_);
   const RunResources resources = OpenResources(
@@ -345,6 +328,10 @@ RunSummary PatchMatchController::Summarize(const RunState& run,
   summary.warnings = warnings_;
   summary.num_fusable = CountFinalMaps(run.workspace, run.plan);
   if (run.statistics.AnyComputed() || run.statistics.AnyFailed()) {
+    // What it says is not of the maps any more.
+    std::error_code ignored;
+    if (!run.share.IsWhole())
+      std::filesystem::remove(run.workspace.StatePath() / "run.json", ignored);
     WriteRunRecord(run.workspace.StatePath(),
                    run.share.RecordName(),
                    run.statistics.Record(options_, summary));

@@ -2,22 +2,20 @@
 
 #include "colmap_plugin/controller/preview.h"
 #include "colmap_plugin/controller/ray_convention.h"
+#include "colmap_plugin/controller/share_checks.h"
 #include "colmap_plugin/formats/consistency_graph.h"
 #include "colmap_plugin/formats/map_file.h"
 #include "colmap_plugin/workspace/file_system.h"
 #include "colmap_plugin/workspace/source_level.h"
 #include "colmap_plugin/workspace/stamp.h"
-#include "src/base/error.h"
 #include "src/base/retries.h"
 #include "src/engine/phase_timer.h"
 
-#include <algorithm>
 #include <filesystem>
 #include <limits>
 #include <system_error>
 #include <utility>
 
-#include <fmt/format.h>
 #include <tbb/parallel_invoke.h>
 
 namespace hpm {
@@ -47,22 +45,7 @@ bool FileMapStore::IsNeeded(int stage, int problem) const {
 
 void FileMapStore::StartStage(int stage) {
   inputs_->ForgetDepths();
-  // A whole run knows what it made, and goes on without what failed.
-  if (RunShare(options_.hpm).IsWhole()) return;
-  const std::vector<std::string> missing = plan_.MissingInputs(stage);
-  if (missing.empty()) return;
-  constexpr size_t kMaxNames = 20;
-  const size_t num_named = std::min(kMaxNames, missing.size());
-  throw Error(
-      kNotReady,
-      fmt::format("stage {} needs the maps of stage {} of {} images that are "
-                  "not there yet: {}{}; run that stage of all shards first, "
-                  "hpm_mvs status tells how far it is",
-                  plan_.stages()[stage].name,
-                  plan_.stages()[stage - 1].name,
-                  missing.size(),
-                  fmt::join(missing.begin(), missing.begin() + num_named, ", "),
-                  num_named < missing.size() ? ", ..." : ""));
+  CheckInputs(RunShare(options_.hpm), plan_, stage);
 }
 
 bool FileMapStore::ReadPlanes(int stage,
@@ -110,7 +93,8 @@ void FileMapStore::Write(int stage, int problem, StageOutput* output) {
   const std::string& name = workspace_.ImageName(image);
   const std::string stage_name = plan_.NameOf(stage, image);
   // Rated only, so that nothing was lost.
-  if (output->keep.empty()) output->consistent = std::vector<uint32_t>();
+  if (!options_.patch_match.filter)
+    output->consistent = std::vector<uint32_t>();
   if (!output->consistent.empty()) {
     PhaseTimer timer(&output->seconds, "filter");
     result.losses = CountFilterLosses(output->views,

@@ -66,7 +66,8 @@ inline const char* RemedyFor(FilterCriterion criterion) {
       break;
   }
   return "change --PatchMatchStereo.depth_min and "
-         "--PatchMatchStereo.depth_max";
+         "--PatchMatchStereo.depth_max, or the image's line in "
+         "--Hpm.depth_ranges";
 }
 
 // Share of an image's pixels, 0..1, per criterion that took any.

@@ -92,9 +92,7 @@ std::string Reason(FilterCriterion criterion,
     case FilterCriterion::kRange:
       break;
   }
-  return fmt::format("they lie outside {:g} to {:g}",
-                     options.problems.depth_min,
-                     options.problems.depth_max);
+  return "they lie outside the range that was given";
 }
 
 }  // namespace

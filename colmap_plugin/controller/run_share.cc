@@ -26,6 +26,17 @@ RunShare::RunShare(const HpmOptions& options) : stage_(options.stage) {
                             options.shard));
   }
   shard_ = *number;
+  if (options.overwrite && !IsWhole()) {
+    throw Error(ErrorCode::kUsage,
+                "--Hpm.overwrite 1 goes with all shards and stages only; to "
+                "make all maps anew, delete the folder stereo/hpm_mvs/stamps "
+                "of the workspace before");
+  }
+  if (Finishes() && shard_.count > 1) {
+    throw Error(ErrorCode::kUsage,
+                "--Hpm.stage finish is for all shards at once; leave "
+                "--Hpm.shard out");
+  }
 }
 
 std::vector<bool> RunShare::Problems(const std::vector<StereoProblem>& problems,

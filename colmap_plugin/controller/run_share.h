@@ -18,7 +18,7 @@ constexpr ErrorCode kNotReady{8};
 class RunShare {
  public:
   // As --Hpm.shard and --Hpm.stage say. Throws Error(kUsage) for a text that is
-  // no shard.
+  // no shard and for what does not go with a share of the work.
   explicit RunShare(const HpmOptions& options);
 
   const ShardNumber& shard() const { return shard_; }

@@ -302,7 +302,8 @@ StagePlan::Found StagePlan::Look(int s, int p, bool may_be_cut) const {
   }
   // Incomplete ones, too: where they cannot be made again, others go on with
   // them.
-  const bool is_read = share_.IsWhole() || inputs_[s][p];
+  // One of its own it can make again, for others that read it.
+  const bool is_read = share_.IsWhole() || inputs_[s][p] || mine_[p];
   if (!AreIntact(s, image, is_read, &*stamp, &found)) {
     if (!found.damaged.empty()) found.state = MapState::kDamaged;
   } else if (is_complete || (is_cut && may_be_cut)) {

@@ -171,15 +171,19 @@ nlohmann::json Description(const Workspace& workspace,
   return json;
 }
 
+[[noreturn]] void ThrowUnfit(const fs::path& path) {
+  throw Error(ErrorCode::kBadInput,
+              path.string() +
+                  ": the maps of this image do not fit together; hpm_mvs check "
+                  "--fix 1 and another run make them anew");
+}
+
 void CheckPair(const Map& depth, const Map& normal, const fs::path& path) {
   if (depth.channels == 1 && normal.channels == 3 &&
       depth.width == normal.width && depth.height == normal.height) {
     return;
   }
-  throw Error(ErrorCode::kBadInput,
-              path.string() +
-                  ": depth and normal map do not fit together; hpm_mvs check "
-                  "--fix 1 and another run make them anew");
+  ThrowUnfit(path);
 }
 
 void ExportImage(const Workspace& workspace,
@@ -216,8 +220,17 @@ void ExportImage(const Workspace& workspace,
   }
   const fs::path confidence_path =
       workspace.MapPath(image, MapKind::kConfidence, options.input_type);
+  nlohmann::json description =
+      Description(workspace, image, depth, options, step);
   if (Exists(confidence_path)) {
     const Map confidence = ReadMap(confidence_path);
+    if (confidence.channels != 1 || confidence.width != depth.width ||
+        confidence.height != depth.height)
+      ThrowUnfit(confidence_path);
+    description["confidence"] =
+        "probability that the depth is within 1 % of the truth";
+    if (options.format == "png16")
+      description["confidence_per_step"] = 1 / kMostSteps;
     WriteFileAtomically(
         folder / (name + ".confidence." +
                   (options.format == "png16" ? "png" : options.format)),
@@ -226,8 +239,8 @@ void ExportImage(const Workspace& workspace,
   }
   WriteFileAtomically(
       folder / (name + ".json"),
-      Description(workspace, image, depth, options, step)
-              .dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
+      description.dump(
+          2, ' ', false, nlohmann::json::error_handler_t::replace) +
           "\n");
 }
 

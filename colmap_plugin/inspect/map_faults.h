@@ -21,9 +21,10 @@ std::string FaultOfDepths(const std::filesystem::path& path,
 // length one.
 std::string FaultOfNormals(const std::filesystem::path& path);
 
-// Header, whole groups inside the image, every index below num_images.
-// One channel, every value in 0..1.
+// Header, length, one channel, every value in 0..1.
 std::string FaultOfConfidence(const std::filesystem::path& path);
+
+// Header, whole groups inside the image, every index below num_images.
 std::string FaultOfGraph(const std::filesystem::path& path, int num_images);
 
 }  // namespace hpm

@@ -2,7 +2,7 @@
 
 #include "colmap_plugin/controller/run_budget.h"
 #include "colmap_plugin/controller/run_resources.h"
-#include "colmap_plugin/controller/run_share.h"
+#include "colmap_plugin/controller/share_checks.h"
 #include "colmap_plugin/controller/thread_supply.h"
 #include "colmap_plugin/inspect/planned_run.h"
 #include "colmap_plugin/workspace/far_origin.h"
@@ -58,8 +58,10 @@ class Planner {
       const ShardNumber shard = RunShare(options_.hpm).shard();
       ThrowIfLocked(run_->workspace().StatePath(), {shard.index, shard.count});
     });
-    const bool is_planned =
-        Attempt([&] { run_->Plan(/*look_at_maps=*/true, log_); });
+    const bool is_planned = Attempt([&] {
+      run_->Plan(/*look_at_maps=*/true, log_);
+      CheckShare(RunShare(options_.hpm), run_->plan());
+    });
     if (!is_planned) return std::move(plan_);
     planning_seconds_ =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start)
@@ -68,6 +70,7 @@ class Planner {
     SayImages();
     SaySizes();
     SayDisk();
+    Attempt([&] { CheckFirstInputs(); });
     if (threads && target) SayMemory(*target, threads->num_threads());
     if (plan_.problems.empty()) SayTime();
     return std::move(plan_);
@@ -92,6 +95,17 @@ class Planner {
     plan_.lines.push_back(fmt::format(format, std::forward<T>(values)...));
   }
 
+  // Of the stage that this process would begin with.
+  void CheckFirstInputs() const {
+    const StagePlan& plan = run_->plan();
+    for (int s = 0; s < static_cast<int>(plan.stages().size()); ++s) {
+      for (int p = 0; p < static_cast<int>(run_->problems().size()); ++p) {
+        if (plan.IsNeeded(s, p))
+          return CheckInputs(RunShare(options_.hpm), plan, s);
+      }
+    }
+  }
+
   void SayImages() {
     const std::vector<StereoProblem>& problems = run_->problems();
     const int num_references = run_->num_references();
@@ -99,7 +113,10 @@ class Planner {
     std::vector<size_t> sources;
     std::vector<std::string> failing;
     int num_kept = 0;
+    int num_mine = 0;
     for (int p = 0; p < num_references; ++p) {
+      if (!run_->plan().IsMine(p)) continue;
+      ++num_mine;
       sources.push_back(problems[p].src_images.size());
       if (!CanBeComputed(run_->workspace(), problems[p])) {
         failing.push_back(run_->workspace().ImageName(problems[p].ref_image));
@@ -112,23 +129,27 @@ class Planner {
     std::sort(sources.begin(), sources.end());
     Say("Images: {} to compute, {} kept from an earlier run, {} cannot be "
         "computed",
-        num_references - num_kept - static_cast<int>(failing.size()),
+        num_mine - num_kept - static_cast<int>(failing.size()),
         num_kept,
         failing.size());
+    if (num_mine < num_references)
+      Say("Images of other shards: {}", num_references - num_mine);
     if (problems.size() > static_cast<size_t>(num_references)) {
       Say("Further images, as they are sources of these: {}",
           problems.size() - num_references);
     }
-    Say("Sources per image: {} to {}, median {}",
-        sources.front(),
-        sources.back(),
-        sources[sources.size() / 2]);
+    if (!sources.empty()) {
+      Say("Sources per image: {} to {}, median {}",
+          sources.front(),
+          sources.back(),
+          sources[sources.size() / 2]);
+    }
     if (failing.empty()) return;
     plan_.problems.push_back(fmt::format(
         "{} of {} images would fail, the first: {}; the others would be "
         "computed",
         failing.size(),
-        num_references,
+        num_mine,
         failing.front()));
     if (plan_.exit_code == 0)
       plan_.exit_code = static_cast<int>(ErrorCode::kPartial);

@@ -87,6 +87,7 @@ class Gatherer {
     AddSparseDepths(image, &to);
     AddStatistics(&to);
     AddMaps(image, &to);
+    if (to.has_maps) AddConfidence(image, &to);
   }
 
   // Of the worst images, where there are too many: those with the smallest
@@ -199,10 +200,6 @@ class Gatherer {
       to->depths = SpanOf(depth.data);
       to->depth = DepthThumbnail(depth);
       to->normal = NormalThumbnail(normal);
-      const auto confidence =
-          workspace_.MapPath(image, MapKind::kConfidence, data_->stage);
-      if (std::filesystem::exists(confidence, ignored))
-        to->confidence = ConfidenceThumbnail(ReadThinned(confidence));
       to->has_maps = true;
       if (!to->valid_share) {
         to->valid_share =
@@ -213,6 +210,21 @@ class Gatherer {
       }
     } catch (const Error& error) {
       to->why_not = error.what();
+    }
+  }
+
+  // A damaged one is no fault of the depth.
+  void AddConfidence(int image, ReportedImage* to) const {
+    const auto path =
+        workspace_.MapPath(image, MapKind::kConfidence, data_->stage);
+    std::error_code ignored;
+    if (!std::filesystem::exists(path, ignored)) return;
+    try {
+      const Map confidence = ReadThinned(path);
+      if (confidence.channels == 1)
+        to->confidence = ConfidenceThumbnail(confidence);
+    } catch (const Error&) {
+      return;
     }
   }
 

@@ -96,6 +96,8 @@ std::optional<Sample> MeasureSample(const PlannedRun& run,
   options.workspace.path = scratch.path();
   options.problems.config_path = scratch.path() / "sample.cfg";
   options.hpm.overwrite = true;
+  options.hpm.shard = HpmOptions().shard;
+  options.hpm.stage = HpmOptions().stage;
   options.hpm.previews = false;
   options.hpm.num_levels = -1;
   using Clock = std::chrono::steady_clock;

@@ -144,9 +144,9 @@ std::vector<OptionSpec> MakeTable() {
           "Compute maps again that are complete and made with the same options"),
       Hpm(kCommon, kNothing, "keep_photometric", &H::keep_photometric, Anything(),
           "0: do not publish *.photometric.bin beside *.geometric.bin, which saves half of the disk; with "
-          "PatchMatchStereo.geom_consistency 0 they are the result and stay"),
+          "PatchMatchStereo.geom_consistency 0 they are the result and stay; those of earlier runs stay, too"),
       Hpm(kCommon, kNothing, "log_format", &H::log_format, OneOf({"text", "json"}),
-          "json: one object a line on standard output, for programs (docs/options.md)"),
+          "json: patch_match_stereo writes one object a line to standard output, for programs (docs/options.md)"),
       Hpm(kCommon, kNothing, "report", &H::report, Anything(),
           "Write stereo/report.html at the end: pictures, losses and times of all images, warnings with remedies"),
       Hpm(kExpert, kNothing, "shard", &H::shard, AnyShard(),
@@ -157,7 +157,7 @@ std::vector<OptionSpec> MakeTable() {
           "the stages; finish: computes nothing, removes what only other stages needed"),
       Hpm(kCommon, kNothing, "confidence", &H::confidence, Anything(),
           "Write stereo/confidence_maps: per pixel the probability, 0 to 1, that its depth is within 1 % of the truth "
-          "(docs/confidence.md)"),
+          "(docs/confidence.md); asked for when the maps are finished, it takes nearly a whole run"),
       Hpm(kCommon, kNothing, "previews", &H::previews, Anything(),
           "Write colour pictures of the maps to stereo/previews"),
       HpmProblems(kCommon, kInputs, "depth_ranges", &I::depth_ranges, Anything(),

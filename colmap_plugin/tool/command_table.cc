@@ -75,7 +75,8 @@ std::vector<Command> MakeTable() {
        "mean: depth is z in the camera's frame in model units, 0 where there is none; normals are unit vectors in "
        "the camera's frame. ply: IMAGE.ply, the points of this one image in the model's frame, with colours and "
        "normals, for a quick look without fusion. exr: one channel Y or three, R G B = x y z, 32-bit float. "
-       "png16: depth in steps of depth_per_step, 0 = none; normals as 32768 + 32767 n.",
+       "png16: depth in steps of depth_per_step, 0 = none; normals as 32768 + 32767 n. Where there is a confidence map, "
+       "IMAGE.confidence.EXT, too, in png16 as 65535 times the probability.",
        "0 done, 3 there are no such maps, 4 some maps are damaged, the others are written",
        TakesOptions::kWorkspace,
        {ExportRow("format", &E::format, OneOf({"exr", "pfm", "png16", "npy", "ply"}), "Kind of files"),

@@ -65,7 +65,7 @@ This file is the output of `hpm_mvs help --markdown`; a test compares the two.
 constexpr char kMarkdownLog[] = R"(
 ## The log as JSON
 
-With `--Hpm.log_format json` standard output holds one object a line, also for warnings and errors. All have `event` and
+With `--Hpm.log_format json` the standard output of `patch_match_stereo` holds one object a line, also for warnings and errors. All have `event` and
 `time`, in seconds since the start. Members may be added.
 
 | event | members |

@@ -127,7 +127,9 @@ int RunPatchMatchStereo(const std::vector<std::string>& arguments,
 int RunCommand(const Command& command,
                const std::vector<std::string>& arguments,
                const ToolEnvironment& tool) {
-  const ParsedCommand parsed = ParseCommand(command, arguments);
+  ParsedCommand parsed = ParseCommand(command, arguments);
+  // They answer in their own form.
+  parsed.run.options.controller.hpm.log_format = HpmOptions().log_format;
   if (parsed.run.help) return Print(CommandHelp(command), tool);
   return Guarded(tool, parsed.run, [&](ProgressLine* progress) {
     const CommandCall call = {

@@ -143,6 +143,12 @@ void CheckOutputs(const Workspace& workspace,
       folders.insert(workspace.MapPath(problem.ref_image, kind, "photometric")
                          .parent_path());
     }
+    const fs::path confidence =
+        workspace
+            .MapPath(problem.ref_image, MapKind::kConfidence, "photometric")
+            .parent_path();
+    // Made where it is asked for.
+    if (Exists(confidence)) folders.insert(confidence);
   }
   for (const fs::path& folder : folders) CheckWritable(folder, access);
   for (const StereoProblem& problem : problems) {

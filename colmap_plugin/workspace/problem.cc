@@ -154,7 +154,7 @@ class ProblemReader {
       Warn(
           "Ignoring {}: no sparse point and no other view tells the depth "
           "range; set both --PatchMatchStereo.depth_min and "
-          "--PatchMatchStereo.depth_max.",
+          "--PatchMatchStereo.depth_max, or --Hpm.depth_ranges.",
           Describe(without_range_));
     }
     if (estimated_.num() > 0) {
@@ -195,7 +195,7 @@ class ProblemReader {
     } else if (without_range_.num() > 0) {
       remedy =
           "set both --PatchMatchStereo.depth_min and "
-          "--PatchMatchStereo.depth_max";
+          "--PatchMatchStereo.depth_max, or --Hpm.depth_ranges";
     }
     throw Error(ErrorCode::kBadInput,
                 fmt::format("none of the {} reference images of {} can be "

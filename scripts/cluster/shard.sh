@@ -22,7 +22,7 @@ while :; do
   code=$?
   case $code in
   7 | 8) ;;
-  4) case " $* " in *" finish "*) exit 4 ;; esac; exit 0 ;;
+  4) case " $* " in *" finish "* | *"stage=finish "*) exit 4 ;; esac; exit 0 ;;
   *) exit $code ;;
   esac
   tries=$((tries - 1))

@@ -1,4 +1,5 @@
 """--Hpm.confidence: maps beside the final ones, which stay as they are."""
+import json
 import shutil
 import subprocess
 import unittest
@@ -83,8 +84,17 @@ class Confidence(CliTest):
             exported.read_bytes()[-4 * 96 * 72 :],
             self.path("view01.png").read_bytes()[-4 * 96 * 72 :],
         )
+        meaning = json.loads((self.dense / "stereo/export/view01.png.json").read_text())
+        self.assertIn("1 %", meaning["confidence"])
         page = (self.dense / "stereo/report.html").read_text()
         self.assertIn(">confidence</th>", page)
+
+    def test_a_damaged_one_does_not_hide_the_depth_from_the_report(self):
+        self.run_with("--Hpm.confidence=1")
+        for name in self.names():
+            self.path(name).write_bytes(b"96&72&1&")
+        self.assert_exit(self.run_other("report", *FAST), 0)
+        self.assertNotIn("no maps", (self.dense / "stereo/report.html").read_text())
 
 
 if __name__ == "__main__":

@@ -175,7 +175,59 @@ class Shards(CliTest):
             self.assertIsNone(process.poll())
         self.assert_exit(self.run_tool(self.dense, *OPTIONS), 7, "4711_0")
 
+    def plan(self, *options):
+        return subprocess.run(
+            [HPM_MVS, "plan", "--workspace_path", str(self.dense), *OPTIONS, *options],
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=120,
+        )
+
+    def test_plan_says_what_the_share_would_do_and_what_stops_it(self):
+        first, second = self.stages()[:2]
+        mine = self.plan(f"--Hpm.stage={first}", "--Hpm.shard=1/3")
+        self.assertEqual(mine.returncode, 0, mine.stdout)
+        self.assertIn("0 kept", mine.stdout)
+        self.assertNotIn("could not be measured", mine.stdout)
+        for code, options in (
+            (2, ["--Hpm.stage=polishing"]),
+            (NOT_READY, ["--Hpm.stage=finish"]),
+            (NOT_READY, [f"--Hpm.stage={second}"]),
+            (2, ["--Hpm.overwrite=1", "--Hpm.shard=0/3"]),
+        ):
+            result = self.plan(*options)
+            self.assertEqual(result.returncode, code, f"{options}\n{result.stdout}")
+
+    def test_a_damaged_inner_map_is_made_again_by_its_own_shard(self):
+        stages = self.stages()
+        for stage in stages[:-1]:
+            for i in range(2):
+                self.run_share(f"{i}/2", stage)
+        inner = stages[-2]
+        path = self.dense / f"stereo/hpm_mvs/{inner}/view00.png.depth.bin"
+        good, times = path.read_bytes(), path.stat()
+        # As after a power cut: the stamp holds, the bytes do not.
+        for stamp in (self.dense / "stereo/hpm_mvs/stamps" / inner).rglob("*.json"):
+            record = json.loads(stamp.read_text())
+            record["unsynced_since"] = "another kernel"
+            stamp.write_text(json.dumps(record))
+        path.write_bytes(good[:-4] + b"\0\0\0\0")
+        os.utime(path, ns=(times.st_atime_ns, times.st_mtime_ns))
+        self.run_share("1/2", stages[-1], NOT_READY)
+        self.run_share("0/2", inner)
+        self.assertEqual(path.read_bytes(), good)
+        self.run_share("1/2", stages[-1])
+
+    def test_the_record_of_an_older_run_does_not_stay(self):
+        self.assert_exit(self.run_tool(self.dense, *OPTIONS), 0)
+        self.assertTrue((self.dense / "stereo/hpm_mvs/run.json").exists())
+        for stage in self.stages():
+            result = self.run_tool(
+                self.dense, *OPTIONS, "--random_seed=5", "--Hpm.shard=0/1", f"--Hpm.stage={stage}"
+            )
+            self.assert_exit(result, 0)
+        self.assertFalse((self.dense / "stereo/hpm_mvs/run.json").exists())
+
     def test_nonsense_is_exit_2(self):
+        self.run_share("0/2", "finish", 2)
         self.run_share("3/3", "all", 2)
         result = self.run_share("0/1", "polishing", 2)
         self.assertIn("photometric", result.stderr)

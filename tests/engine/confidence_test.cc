@@ -10,11 +10,13 @@ namespace hpm {
 namespace {
 
 constexpr int kNumSources = 4;
+constexpr int kWidth = 128;
+constexpr size_t kPixel = 120;  // that all sources see
 
 // A camera at the origin and four beside it; every plane faces them at depth 4.
 class ConfidenceTest : public testing::Test {
  protected:
-  ConfidenceTest() : map_(8, 6) {
+  ConfidenceTest() : map_(kWidth, 2) {
     views_.ref = ViewAt(0);
     for (int j = 1; j <= kNumSources; ++j)
       views_.srcs.push_back(ViewAt(0.5f * static_cast<float>(j)));
@@ -24,24 +26,24 @@ class ConfidenceTest : public testing::Test {
 
   View ViewAt(float x) const {
     const auto picture = std::make_shared<GrayImage>();
-    *picture = {map_.width, map_.height, std::vector<uint8_t>(48, 7)};
+    *picture = {map_.width, map_.height, std::vector<uint8_t>(2 * kWidth, 7)};
     const Camera camera = {map_.width,
                            map_.height,
-                           10,
-                           10,
-                           3.5f,
-                           2.5f,
+                           80,
+                           80,
+                           63.5f,
+                           0.5f,
                            {{1, 0, 0, 0, 1, 0, 0, 0, 1}},
                            {-x, 0, 0}};
     return {camera, picture, nullptr};
   }
 
-  // Of the middle pixel, where these sources confirm all pixels.
+  // Of that pixel, where these sources confirm all pixels.
   float Of(uint32_t consistent) const {
     const NeededViews needed(
         views_, map_, {-1, 0, 1, 2}, 0.5, /*geometric=*/false);
     const std::vector<uint32_t> all(map_.planes.size(), consistent);
-    return Confidence(views_, needed, map_, all)[20];
+    return Confidence(views_, needed, map_, all)[kPixel];
   }
 
   ViewSet views_;

@@ -57,6 +57,7 @@ class InputCacheTest : public testing::Test {
     const StageFiles files = {
         workspace_.MapPath(image, MapKind::kDepth, "photometric"),
         workspace_.MapPath(image, MapKind::kNormal, "photometric"),
+        {},
         {}};
     WriteMaps(map, camera, files.depth, files.normal);
     return files;
