@@ -1,6 +1,7 @@
 """A Slurm of its own on this machine, for tests: munged, slurmctld and as many slurmd as
 nodes are asked for, all of the user who starts them, in one folder, without a service of
 the system. Ports are free ones, so that it runs beside another Slurm."""
+import ctypes
 import os
 import pathlib
 import pwd
@@ -14,6 +15,15 @@ import time
 # Debian has the daemons where only root's search path looks.
 _PATH = os.environ.get("PATH", "") + os.pathsep + "/usr/sbin" + os.pathsep + "/sbin"
 NEEDED = ("munged", "slurmctld", "slurmd", "sbatch", "scontrol", "squeue", "scancel", "sinfo")
+
+_LIBC = ctypes.CDLL(None)
+_PR_SET_PDEATHSIG = 1
+
+
+def _end_with_the_test():
+    """A test that is killed, as after too long, must leave no daemons."""
+    _LIBC.prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+
 
 _CONFIGURATION = """\
 ClusterName=hpm
@@ -98,6 +108,7 @@ class Cluster:
             self._daemons[name] = subprocess.Popen(
                 command, stdin=subprocess.DEVNULL, stdout=out, stderr=subprocess.STDOUT,
                 env={**self.environment, **environment}, start_new_session=True,
+                preexec_fn=_end_with_the_test,
             )
 
     def _wait_until(self, condition, what, seconds=60):
