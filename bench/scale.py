@@ -110,6 +110,7 @@ def cpu_seconds(pid):
 
 
 def peak_bytes(pid):
+    """That of wait4 would be this script's, if it is larger."""
     for line in pathlib.Path(f"/proc/{pid}/status").read_text().splitlines():
         if line.startswith("VmHWM:"):
             return 1024 * int(line.split()[1])
@@ -122,24 +123,26 @@ def run(command, num_images, planning_only):
     planned = False
     peaks = []
     number = 0
+    peak = 0
     for line in process.stdout:
+        peak = peak_bytes(process.pid) or peak
         if "Processing view" in line:
             if not planned:
                 planned = True
                 print(f"planning: {time.monotonic() - begin:.1f} s, {cpu_seconds(process.pid):.1f} CPU s, "
-                      f"peak {peak_bytes(process.pid) / MIB:.0f} MiB", flush=True)
+                      f"peak {peak / MIB:.0f} MiB", flush=True)
                 if planning_only:
                     process.terminate()
             number += 1
             if number % max(1, num_images // 2) == 0:
-                peaks.append(f"{number}: {peak_bytes(process.pid) / MIB:.0f}")
+                peaks.append(f"{number}: {peak / MIB:.0f}")
         elif not planned or "WARN" in line or "ERROR" in line:
             print(f"  {time.monotonic() - begin:6.1f} s {line.rstrip()}", flush=True)
     _, status, usage = os.wait4(process.pid, 0)
     process.returncode = os.waitstatus_to_exitcode(status)
     cpu = usage.ru_utime + usage.ru_stime
     print(f"exit {process.returncode} after {time.monotonic() - begin:.1f} s, {cpu:.1f} CPU s, "
-          f"{1000 * cpu / num_images:.1f} ms per image, peak {usage.ru_maxrss / 1024:.0f} MiB")
+          f"{1000 * cpu / num_images:.1f} ms per image, peak {peak / MIB:.0f} MiB")
     if not planning_only:
         print("peak MiB after so many images of all stages: " + ", ".join(peaks))
 

@@ -8,6 +8,7 @@
 #             when the arm64 libraries cannot be had
 #   --release also what documents are made and packages, spelling and scripts are checked
 #             with and a compiler for Windows; not libc++-dev, which displaces a package of COLMAP's
+#   --slurm   also Slurm, with which tests/cluster starts a scheduler of its own
 #   --browser also Chromium, in which a test opens the report of a run
 #   --check   installs nothing; exit code 1 when something is missing
 set -euo pipefail
@@ -68,10 +69,11 @@ for argument in "$@"; do
     --colmap-newest) PACKAGES+=("${COLMAP_NEWEST_PACKAGES[@]}") ;;
     --release) PACKAGES+=("${RELEASE_PACKAGES[@]}") ;;
     --arm64) arm64=1; PACKAGES+=("${ARM64_PACKAGES[@]}") ;;
+    --slurm) PACKAGES+=(slurm-wlm munge) ;;
     --browser) PACKAGES+=(chromium) ;;
     --check) check=1 ;;
     --help) sed -n '2,/^set /s/^# \{0,1\}//p' "$0"; exit 0 ;;
-    *) echo "usage: scripts/install_dependencies.sh [--colmap] [--colmap-newest] [--arm64] [--release] [--browser] [--check]" >&2; exit 2 ;;
+    *) echo "usage: scripts/install_dependencies.sh [--colmap] [--colmap-newest] [--arm64] [--release] [--slurm] [--browser] [--check]" >&2; exit 2 ;;
   esac
 done
 # The arm64 libraries belong to no package manager's list.

@@ -30,7 +30,7 @@ quoted() {
 
 submit() { # OPTIONS_OF_SBATCH COMMAND
   # shellcheck disable=SC2086 # options are words
-  sbatch --parsable --requeue --open-mode=append ${SBATCH_OPTIONS:-} $1 \
+  sbatch --parsable --requeue --kill-on-invalid-dep=yes --open-mode=append ${SBATCH_OPTIONS:-} $1 \
     --wrap "HPM_MVS=$(quoted "$hpm_mvs") HPM_TRIES=40 exec sh $2"
 }
 

@@ -1,7 +1,9 @@
-"""Limits of the system on threads and address space."""
+"""Limits of the system on threads and address space, and the memory that a run tells."""
+import json
 import os
 import resource
 import subprocess
+import sys
 import unittest
 
 from support import FAST, HPM_MVS, IS_SANITIZED, CliTest, map_files
@@ -75,6 +77,17 @@ class Threads(CliTest):
                 self.assert_complete(workspace)
             self.assert_no_partial_files(workspace)
         self.assertIn(0, codes)
+
+
+@unittest.skipUnless(sys.platform == "linux" and not IS_SANITIZED, "counted by Linux, without what sanitizers need")
+class Memory(CliTest):
+    def test_the_peak_is_not_that_of_the_program_that_starts_it(self):
+        ballast = b"\1" * (400 << 20)
+        workspace = self.workspace()
+        self.assert_exit(self.run_tool(workspace, *FAST), 0)
+        record = json.loads((workspace / "stereo/hpm_mvs/run.json").read_text())
+        self.assertLess(record["peak_memory_bytes"], len(ballast) // 2)
+        self.assertGreater(record["peak_memory_bytes"], 1 << 20)
 
 
 if __name__ == "__main__":
