@@ -32,7 +32,7 @@ PAPERS = {
 }
 # Pages in the order in which they are of use; others of docs/ follow under "More".
 SECTIONS = {
-    "Use": ["installing", "tutorial", "holes", "options", "reliability", "patches", "changelog"],
+    "Use": ["installing", "tutorial", "holes", "options", "python", "reliability", "patches", "changelog"],
     "Method and figures": ["algorithm", "benchmarks", "ablation", "experiments", "gpu", "data"],
     "Work on it": ["contributing", "architecture", "systems", "security"],
 }
