@@ -8,7 +8,9 @@
 #include "python/src/errors.h"
 #include "python/src/options.h"
 #include "python/src/progress.h"
+#include "src/base/error.h"
 
+#include <atomic>
 #include <utility>
 
 #include <fmt/format.h>
@@ -45,6 +47,24 @@ LogSink LogTo(nb::handle logger, const Post& post) {
   };
 }
 
+// Retries and the limit of threads belong to the process, not to a run.
+class OnlyRun {
+ public:
+  OnlyRun() {
+    if (is_there_.exchange(true)) {
+      throw Error(ErrorCode::kUsage,
+                  "another patch_match_stereo() is at work in this process; "
+                  "wait for its end, or call it in a process of its own");
+    }
+  }
+  ~OnlyRun() { is_there_ = false; }
+  OnlyRun(const OnlyRun&) = delete;
+  OnlyRun& operator=(const OnlyRun&) = delete;
+
+ private:
+  inline static std::atomic<bool> is_there_{false};
+};
+
 // An option of a function's own; nothing if it is empty.
 void AddArgument(const std::string& name,
                  const std::string& value,
@@ -70,6 +90,7 @@ RunSummary PatchMatchStereo(nb::handle workspace_path,
   const nb::object logger =
       nb::module_::import_("logging").attr("getLogger")("hpm_mvs");
 
+  const OnlyRun only;
   RunSummary summary;
   RunInBackground([&](const CancelToken& cancel, const Post& post) {
     const LogSink log = LogTo(logger, post);
@@ -157,7 +178,8 @@ more              options by name; they go before `options`
 
 Messages go to the logger "hpm_mvs" of Python's logging. The GIL is released. Raises
 a class of Error for each exit code of the program, and KeyboardInterrupt on Ctrl-C;
-the same call again goes on where the run stopped.)";
+the same call again goes on where the run stopped. One run at a time: a second one in
+another thread raises UsageError.)";
 
 }  // namespace
 

@@ -138,6 +138,19 @@ class Progress(CliTest):
         self.assert_no_partial_files(workspace)
         self.assert_rerun_completes(workspace)
 
+    def test_a_second_run_in_the_process_is_refused(self):
+        workspace, other = self.workspace(), self.workspace()
+        refused = []
+
+        def progress(event):
+            with self.assertRaisesRegex(hpm_mvs.UsageError, "in this process") as caught:
+                hpm_mvs.patch_match_stereo(other, **as_dict(FAST))
+            refused.append(caught.exception)
+
+        hpm_mvs.patch_match_stereo(workspace, progress=progress, **as_dict(FAST))
+        self.assertGreater(len(refused), 0)
+        hpm_mvs.patch_match_stereo(other, **as_dict(FAST))
+
     def test_other_threads_of_python_go_on(self):
         ticks, stop = [], threading.Event()
 
