@@ -31,7 +31,7 @@ PACKAGES=(
   # tests (clang is the second compiler), format, lint
   libgtest-dev libgmock-dev libbenchmark-dev
   clang clang-format clang-tidy
-  python3 python3-venv
+  python3 python3-venv python3-dev
   # what cpack makes the Debian package with
   dpkg-dev file
   # the program whose step we replace; it also runs in the tests

@@ -8,7 +8,7 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 MAX_LINES = 500
-FOLDERS = ("src", "cuda", "colmap_plugin", "bench", "tests", "examples", "scripts", "cmake", "patches")
+FOLDERS = ("src", "cuda", "colmap_plugin", "bench", "tests", "examples", "python", "scripts", "cmake", "patches")
 SUFFIXES = {".h", ".cc", ".cu", ".cuh", ".py", ".sh", ".cmake"}
 NEVER_ENDS = ("src", "cuda", "colmap_plugin")
 MAY_END = "colmap_plugin/tool/"

@@ -8,7 +8,7 @@ if ! command -v clang-format >/dev/null; then
   echo "skipped: clang-format is not installed"
   exit 77
 fi
-folders=(src colmap_plugin bench tests examples)
+folders=(src colmap_plugin bench tests examples python)
 [[ -d cuda ]] && folders+=(cuda)
 if ! messages=$(find "${folders[@]}" \
   \( -name '*.h' -o -name '*.cc' -o -name '*.cu' -o -name '*.cuh' \) -print0 |

@@ -9,7 +9,7 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SUFFIXES = {".h", ".cc", ".cu", ".cuh"}
-OUR_FOLDERS = ("src", "cuda", "colmap_plugin", "bench", "tests", "examples")
+OUR_FOLDERS = ("src", "cuda", "colmap_plugin", "python", "bench", "tests", "examples")
 
 BASE = ("src/base",)
 CORE = ("src/core",)
@@ -41,6 +41,7 @@ ALLOWED = {
     "colmap_plugin/tool": INSPECT,
     "colmap_plugin/in_colmap": INSPECT + ("colmap_plugin/tool",),
     "colmap_plugin/wrapper": BASE,
+    "python": INSPECT + ("colmap_plugin/tool",),
     "bench": EVERYTHING,
     "examples": LIBRARY + ("src/cpu",),
     "tests": EVERYTHING,

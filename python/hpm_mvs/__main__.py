@@ -1,0 +1,4 @@
+"""`python -m hpm_mvs` is the program hpm_mvs."""
+from ._program import main
+
+main()
