@@ -37,8 +37,9 @@ is enough. Booleans are 0/1, true/false, yes/no, on/off.
 
 constexpr char kExitCodes[] = R"(
 Exit codes: 0 done, 1 failure, 2 wrong option, 3 bad input file, 4 some images
-failed, 5 out of memory or disk, 6 device, 7 workspace in use, 130/143/129 interrupted.
-A run that was stopped goes on where it was when the same command is given again.
+failed, 5 out of memory or disk, 6 device, 7 workspace in use, 8 maps of other
+shards are missing, 130/143/129 interrupted. A run that was stopped goes on
+where it was when the same command is given again.
 )";
 
 constexpr char kMarkdownHead[] =
@@ -88,6 +89,7 @@ constexpr char kMarkdownExitCodes[] = R"(
 | 5 | out of memory or disk |
 | 6 | the device cannot be used |
 | 7 | another run works on this workspace |
+| 8 | with `Hpm.shard` or `Hpm.stage`: maps of other shards or stages are not there yet |
 | 130, 143, 129 | interrupted by SIGINT, SIGTERM, SIGHUP |
 )";
 

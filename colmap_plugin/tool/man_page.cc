@@ -71,6 +71,9 @@ The device cannot be used.
 .B 7
 Another run works on this workspace.
 .TP
+.B 8
+With Hpm.shard or Hpm.stage: maps of other shards or stages are not there yet.
+.TP
 .B 130, 143, 129
 Interrupted by SIGINT, SIGTERM, SIGHUP.
 .SH EXAMPLE

@@ -1,5 +1,6 @@
 #include "python/src/errors.h"
 
+#include "colmap_plugin/controller/run_share.h"
 #include "colmap_plugin/tool/name_options.h"
 
 #include <exception>
@@ -77,6 +78,11 @@ void BindErrors(nb::module_& module) {
       {ErrorCode::kLocked,
        "LockedError",
        "Another run works on this workspace.",
+       nullptr},
+      {kNotReady,
+       "NotReadyError",
+       "With Hpm.shard or Hpm.stage: maps of other shards or stages are not "
+       "there yet.",
        nullptr},
       {ErrorCode::kInterrupted,
        "InterruptedRunError",

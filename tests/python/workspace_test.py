@@ -72,7 +72,7 @@ class Errors(CliTest):
         self.assertEqual(
             codes,
             {"Failure": 1, "UsageError": 2, "InputError": 3, "PartialError": 4,
-             "ResourcesError": 5, "DeviceError": 6, "LockedError": 7, "InterruptedRunError": 130},
+             "ResourcesError": 5, "DeviceError": 6, "LockedError": 7, "NotReadyError": 8, "InterruptedRunError": 130},
         )
 
     def test_a_wrong_option(self):
@@ -96,6 +96,10 @@ class Errors(CliTest):
     def test_a_card_that_is_not_there(self):
         options = {"Hpm.device": "cuda", "gpu_index": "99"}
         self.check(hpm_mvs.DeviceError, 6, ["GPU"], self.workspace(), **options)
+
+    def test_maps_of_other_shards_that_are_not_there_yet(self):
+        options = {"Hpm.stage": "finish"}
+        self.check(hpm_mvs.NotReadyError, 8, ["status"], self.workspace(), **options)
 
     def test_a_workspace_in_use(self):
         workspace = self.workspace()
