@@ -9,7 +9,8 @@
 #   --release also what documents are made and packages, spelling and scripts are checked
 #             with and a compiler for Windows; not libc++-dev, which displaces a package of COLMAP's
 #   --slurm   also Slurm, with which tests/cluster starts a scheduler of its own
-#   --browser also Chromium, in which a test opens the report of a run
+#   --browser also Chromium, in which tests/browser opens the report of a run; where there is
+#             no such package, a Chrome on PATH will do
 #   --check   installs nothing; exit code 1 when something is missing
 set -euo pipefail
 
