@@ -194,6 +194,7 @@ void FileMapStore::WriteMaps(int stage,
   const auto size = static_cast<double>(map.planes.size());
   const size_t num_without = map.planes.size() - written.num_valid;
   result->valid_pixel_share = 1.0 - static_cast<double>(num_without) / size;
+  if (output.is_final) result->costs = written.costs;
   if (written.num_dropped > 0) {
     result->losses[FilterCriterion::kRange] =
         static_cast<double>(written.num_dropped) / size;

@@ -4,9 +4,9 @@
 #include "src/image/middle_pixel.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <memory>
+#include <mutex>
 
 #include <tbb/parallel_for.h>
 
@@ -93,11 +93,12 @@ WrittenDepths WritePlanes(const HypothesisMap& map,
                           const std::vector<bool>* keep,
                           MapWriter* depth,
                           MapWriter* normal) {
-  std::atomic<size_t> num_valid{0}, num_dropped{0};
+  WrittenDepths written;
+  std::mutex mutex;  // guards it
   ForEachBand(map.width, map.height, [&](int begin, int num_rows) {
     const size_t size = static_cast<size_t>(num_rows) * map.width;
     std::vector<float> values(4 * size, 0.0f);
-    size_t band_valid = 0, band_dropped = 0;
+    WrittenDepths band;
     float* at = values.data();
     size_t i = static_cast<size_t>(begin) * map.width;
     for (int row = begin; row < begin + num_rows; ++row) {
@@ -110,10 +111,11 @@ WrittenDepths WritePlanes(const HypothesisMap& map,
                                 static_cast<float>(row) + kColmapShift);
         if (!std::isfinite(z) || !(z > 0)) continue;
         if (!(z >= range.min && z <= range.max)) {
-          ++band_dropped;
+          ++band.num_dropped;
           continue;
         }
-        ++band_valid;
+        ++band.num_valid;
+        band.costs.Add(map.costs[i]);
         at[0] = z;
         at[size] = plane.normal.x;
         at[2 * size] = plane.normal.y;
@@ -123,10 +125,12 @@ WrittenDepths WritePlanes(const HypothesisMap& map,
     depth->WriteRows(0, begin, num_rows, values.data());
     for (int axis = 0; axis < 3; ++axis)
       normal->WriteRows(axis, begin, num_rows, &values[(1 + axis) * size]);
-    num_valid += band_valid;
-    num_dropped += band_dropped;
+    const std::lock_guard<std::mutex> lock(mutex);
+    written.num_valid += band.num_valid;
+    written.num_dropped += band.num_dropped;
+    written.costs += band.costs;
   });
-  return {num_valid, num_dropped};
+  return written;
 }
 
 size_t DropOutside(const DepthRange& range, DepthAndNormal* maps) {

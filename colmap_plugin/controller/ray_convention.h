@@ -6,6 +6,7 @@
 // reading; both directions belong together (docs/architecture.md).
 #pragma once
 
+#include "colmap_plugin/controller/cost_histogram.h"
 #include "colmap_plugin/formats/map_file.h"
 #include "colmap_plugin/workspace/depth_range.h"
 #include "src/image/hypothesis_map.h"
@@ -24,6 +25,7 @@ struct DepthAndNormal {
 struct WrittenDepths {
   size_t num_valid = 0;
   size_t num_dropped = 0;  // outside the range
+  CostHistogram costs;     // of the valid ones
 };
 
 // Writes all rows; the caller commits. Pixels whose plane does not meet

@@ -11,6 +11,7 @@ nlohmann::json ToJson(const StageResult& result) {
       {"filter_losses", ToJson(result.losses)},
       {"cost_evaluations_per_pixel", result.cost_evaluations_per_pixel},
       {"seconds", result.seconds}};
+  if (result.costs) json["cost_histogram"] = ToJson(*result.costs);
   if (!result.device_seconds.empty())
     json["device_seconds"] = result.device_seconds;
   return json;
@@ -33,6 +34,7 @@ bool RunStatistics::Add(const std::string& image,
   if (stage.is_final) {
     valid_shares_[image] = result.valid_pixel_share;
     losses_[image] = result.losses;
+    if (result.costs) costs_[image] = *result.costs;
   }
   for (const auto& [phase, time] : result.seconds) seconds_[phase] += time;
   images_[image][stage_name] = ToJson(result);
@@ -79,6 +81,8 @@ RunSummary RunStatistics::Summarize(
 
 nlohmann::json RunStatistics::Record(const ControllerOptions& options,
                                      const RunSummary& summary) const {
+  CostHistogram costs;
+  for (const auto& [image, of_image] : costs_) costs += of_image;
   return {
       {"options", OptionRecord(options)},
       {"backend", summary.backend},
@@ -89,6 +93,7 @@ nlohmann::json RunStatistics::Record(const ControllerOptions& options,
        summary.valid_pixel_share ? nlohmann::json(*summary.valid_pixel_share)
                                  : nlohmann::json()},
       {"filter_losses", ToJson(summary.filter_losses)},
+      {"cost_histogram", ToJson(costs)},
       {"peak_memory_bytes", summary.peak_memory_bytes},
       {"images_computed", summary.num_computed},
       {"sources_computed", worked_on_.size() - computed_.size()},

@@ -2,12 +2,14 @@
 #pragma once
 
 #include "colmap_plugin/controller/controller.h"
+#include "colmap_plugin/controller/cost_histogram.h"
 #include "colmap_plugin/controller/filter_losses.h"
 #include "colmap_plugin/controller/stages.h"
 #include "src/engine/run_passes.h"
 
 #include <map>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <string>
 
@@ -20,6 +22,8 @@ struct StageResult {
   double valid_pixel_share = 0;
   double cost_evaluations_per_pixel = 0;
   FilterLosses losses;        // of a final stage
+  // Of a final stage: what its maps publish.
+  std::optional<CostHistogram> costs;
   PhaseTimes seconds;         // wall, per phase
   PhaseTimes device_seconds;  // of a card, per kind of work
 };
@@ -69,6 +73,7 @@ class RunStatistics {
   // By image, of final maps.
   std::map<std::string, double> valid_shares_;
   std::map<std::string, FilterLosses> losses_;
+  std::map<std::string, CostHistogram> costs_;
 };
 
 }  // namespace hpm

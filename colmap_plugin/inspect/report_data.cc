@@ -169,6 +169,7 @@ class Gatherer {
     const auto share = statistics.find("valid_pixel_share");
     if (share != statistics.end() && share->is_number())
       to->valid_share = share->get<double>();
+    to->costs = CostHistogramFrom(Member(statistics, "cost_histogram"));
     to->seconds = SecondsOf(to->name);
   }
 

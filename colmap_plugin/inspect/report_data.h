@@ -2,6 +2,7 @@
 // record.
 #pragma once
 
+#include "colmap_plugin/controller/cost_histogram.h"
 #include "colmap_plugin/options/options.h"
 #include "src/base/cancel.h"
 #include "src/base/log.h"
@@ -36,6 +37,8 @@ struct ReportedImage {
   // Shares of the pixels, 0..1. Losses: by criterion, of what the filter took.
   std::optional<double> valid_share;
   std::map<std::string, double> losses;
+  // Of the pixels with a depth; not known of maps that an older version made.
+  std::optional<CostHistogram> costs;
   std::optional<double> seconds;
   // All but the extreme two percent: of the map, and of the sparse points.
   std::optional<DepthSpan> depths, sparse_depths;

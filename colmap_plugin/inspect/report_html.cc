@@ -1,5 +1,6 @@
 #include "colmap_plugin/inspect/report_html.h"
 
+#include "colmap_plugin/inspect/bar_chart.h"
 #include "colmap_plugin/inspect/html.h"
 #include "colmap_plugin/inspect/report_table.h"
 
@@ -12,6 +13,7 @@ namespace hpm {
 namespace {
 
 constexpr int kNumBins = 20;
+constexpr int kBarWidth = 24, kBarHeight = 80;
 
 // Styles and the one script, which sorts the table; nothing is fetched from
 // anywhere, and the page says so to the browser.
@@ -53,39 +55,58 @@ document.querySelectorAll('#images th').forEach(function(th, column) {
 )";
 
 // How many images have which share of pixels with a depth.
-std::string Histogram(const ReportData& data) {
-  int bins[kNumBins] = {};
+std::string ValidShares(const ReportData& data) {
+  std::vector<double> bins(kNumBins, 0);
   for (const ReportedImage& image : data.images) {
     if (!image.has_maps || !image.valid_share) continue;
-    ++bins[std::clamp(
-        static_cast<int>(*image.valid_share * kNumBins), 0, kNumBins - 1)];
+    ++bins[static_cast<size_t>(std::clamp(
+        static_cast<int>(*image.valid_share * kNumBins), 0, kNumBins - 1))];
   }
-  const int most = std::max(1, *std::max_element(bins, bins + kNumBins));
-  constexpr int kBar = 24, kHeight = 80;
-  std::string bars;
+  BarChart chart = {kBarWidth, kBarHeight, "#2ca02c", "0 %", "100 %", {}};
   for (int i = 0; i < kNumBins; ++i) {
-    const double height = static_cast<double>(kHeight) * bins[i] / most;
-    bars += fmt::format(
-        "<rect x=\"{}\" y=\"{:.1f}\" width=\"{}\" height=\"{:.1f}\" "
-        "fill=\"#2ca02c\"><title>{} to {} %: {} images</title></rect>",
-        i * kBar,
-        kHeight - height,
-        kBar - 2,
-        height,
-        100 * i / kNumBins,
-        100 * (i + 1) / kNumBins,
-        bins[i]);
+    chart.titles.push_back(fmt::format("{} to {} %: {:.0f} images",
+                                       100 * i / kNumBins,
+                                       100 * (i + 1) / kNumBins,
+                                       bins[static_cast<size_t>(i)]));
   }
-  return fmt::format(
-      "<h2>Pixels with a depth, by image</h2><svg width=\"{}\" height=\"{}\" "
-      "role=\"img\">{}<text x=\"0\" y=\"{}\">0 %</text><text x=\"{}\" "
-      "y=\"{}\" text-anchor=\"end\">100 %</text></svg>\n",
-      kNumBins * kBar,
-      kHeight + 16,
-      bars,
-      kHeight + 14,
-      kNumBins * kBar,
-      kHeight + 14);
+  return "<h2>Pixels with a depth, by image</h2>" + Svg(chart, bins) + "\n";
+}
+
+// Which share of the pixels with a depth has which cost, over all images.
+std::string Costs(const ReportData& data) {
+  CostHistogram costs;
+  int num_known = 0, num_maps = 0;
+  for (const ReportedImage& image : data.images) {
+    num_maps += image.has_maps;
+    if (!image.has_maps || !image.costs) continue;
+    ++num_known;
+    costs += *image.costs;
+  }
+  if (num_maps == 0) return "";
+  std::string html = "<h2>Matching costs of the pixels with a depth</h2>";
+  if (num_known < num_maps) {
+    html += fmt::format(
+        "<p class=\"small\">Not known of {} of {} images: their maps were made "
+        "by an older version or another program.</p>",
+        num_maps - num_known,
+        num_maps);
+  }
+  const auto count = static_cast<double>(costs.Count());
+  if (count == 0) return html + "\n";
+  BarChart chart = {kBarWidth, kBarHeight, "#1f77b4", "0: alike", "2", {}};
+  for (int i = 0; i < kNumCostBins; ++i) {
+    chart.titles.push_back(fmt::format(
+        "{:.1f} to {:.1f}: {:.1f} %",
+        kMaxCost * static_cast<float>(i) / kNumCostBins,
+        kMaxCost * static_cast<float>(i + 1) / kNumCostBins,
+        100 * static_cast<double>(costs.bins[static_cast<size_t>(i)]) / count));
+  }
+  return html +
+         "<p class=\"small\">0 where the images look alike, 1 where they have "
+         "nothing in common; after geometric passes with what their depths "
+         "disagree. Of each pixel as the last pass left it.</p>" +
+         Svg(chart, {costs.bins.begin(), costs.bins.end()}) +
+         fmt::format("<p>median {:.2f}</p>\n", costs.Median());
 }
 
 double Number(const nlohmann::json& value) {
@@ -210,7 +231,7 @@ std::string Options(const nlohmann::json& run) {
 
 std::string ReportHtml(const ReportData& data) {
   return std::string(kHead) + "<h1>Dense stereo report</h1>\n" + Summary(data) +
-         Warnings(data) + Histogram(data) + ReportTable(data) +
+         Warnings(data) + ValidShares(data) + Costs(data) + ReportTable(data) +
          Phases(data.run) + Options(data.run) + kScript + "</body></html>\n";
 }
 

@@ -1,6 +1,7 @@
 #include "colmap_plugin/inspect/report_table.h"
 
 #include "colmap_plugin/controller/filter_criterion.h"
+#include "colmap_plugin/inspect/bar_chart.h"
 #include "colmap_plugin/inspect/html.h"
 
 #include <algorithm>
@@ -112,6 +113,15 @@ std::string Sources(const ReportedImage& image) {
       "<details><summary>{}</summary>{}</details>", image.sources.size(), list);
 }
 
+std::string Costs(const ReportedImage& image) {
+  if (!image.has_maps) return "";
+  if (!image.costs) return "not known";
+  const auto& bins = image.costs->bins;
+  return Svg({4, 20, "#1f77b4", "0", "2", {}}, {bins.begin(), bins.end()}) +
+         fmt::format("<span class=\"small\">median {:.2f}</span>",
+                     image.costs->Median());
+}
+
 std::string Row(const ReportedImage& image, bool with_confidence) {
   uint64_t num_shared = 0;
   for (const ReportedSource& source : image.sources)
@@ -147,6 +157,10 @@ std::string Row(const ReportedImage& image, bool with_confidence) {
       1 - image.valid_share.value_or(1),
       LossBar(image),
       Html(MainLoss(image)));
+  row += Cell(
+      fmt::format("{:.4f}",
+                  image.has_maps && image.costs ? image.costs->Median() : -1),
+      Costs(image));
   row += Cell(std::to_string(num_sources), Sources(image));
   row += Cell(fmt::format("{:.0f}", shared), fmt::format("{:.0f}", shared));
   row += fmt::format(
@@ -182,6 +196,7 @@ std::string Table(const ReportData& data) {
   headings.insert(headings.end(),
                   {"with depth",
                    "pixels",
+                   "costs",
                    "sources",
                    "shared points",
                    "depth range",

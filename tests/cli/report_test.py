@@ -1,11 +1,14 @@
 """hpm_mvs report: one file that needs nothing else, with a row for every image, whatever
 the images are called."""
 import html.parser
+import json
+import os
+import re
 import subprocess
 import unittest
 
 import sparse_patch
-from support import FAST, HPM_MVS, CliTest
+from support import FAST, HPM_MVS, CliTest, read_map
 
 
 class Page(html.parser.HTMLParser):
@@ -58,7 +61,8 @@ class Report(CliTest):
         for word in ("http:", "https:", "@import", "url("):
             self.assertNotIn(word, text)
         words = " ".join(page.text)
-        for word in ("with depth", "shared points", "geometry", "Time per phase", "peak memory",
+        self.assertNotIn("not known", words)
+        for word in ("with depth", "Matching costs", "median", "shared points", "geometry", "Time per phase", "peak memory",
                      "computed on", "max_image_size"):
             self.assertIn(word, words)
 
@@ -94,6 +98,32 @@ class Report(CliTest):
         self.assertIn(name, page.rows)
         self.assertEqual(page.fetched, [])
         self.assertNotIn("<img src=x", text)
+
+    def test_costs_are_those_of_the_published_pixels_and_stay_with_the_maps(self):
+        dense = self.workspace()
+        self.assert_exit(self.run_tool(dense, *FAST), 0)
+        record = json.loads((dense / "stereo/hpm_mvs/run.json").read_text())
+        for name, stages in record["images"].items():
+            depth = read_map(dense / f"stereo/depth_maps/{name}.geometric.bin")[3]
+            self.assertEqual(sum(stages["geometric"]["cost_histogram"]), sum(z > 0 for z in depth))
+            self.assertNotIn("cost_histogram", stages["photometric"])
+        self.assertEqual(record["cost_histogram"], [
+            sum(bins) for bins in zip(*(stages["geometric"]["cost_histogram"]
+                                        for stages in record["images"].values()))])
+        before = self.page(dense)[0]
+        # A map that is touched is kept, another one is computed again.
+        os.utime(dense / "stereo/depth_maps/view01.png.geometric.bin", (1e9, 1e9))
+        (dense / "stereo/depth_maps/view00.png.geometric.bin").unlink()
+        self.assert_exit(self.run_tool(dense, *FAST), 0)
+        after = self.page(dense)[0]
+        self.assertEqual(re.findall("median [0-9.]+", after), re.findall("median [0-9.]+", before))
+        # As an older version left them.
+        for path in (dense / "stereo/hpm_mvs/stamps").rglob("*view02*"):
+            path.write_text(path.read_text().replace("cost_histogram", "costs"))
+        self.assert_exit(self.report(dense), 0)
+        words = " ".join(self.page(dense)[1].text)
+        self.assertEqual(words.count("not known"), 1)
+        self.assertIn("Not known of 1 of 4 images", words)
 
     def test_images_without_maps_and_warnings_are_told(self):
         dense = self.workspace()

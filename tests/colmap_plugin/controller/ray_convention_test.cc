@@ -95,21 +95,26 @@ TEST_F(RayConvention, DropsDepthsOutsideARangeWithTheirNormals) {
 }
 
 TEST_F(RayConvention, DepthsOutsideARangeAreNotWritten) {
-  const HypothesisMap map = RandomPlanes();
+  HypothesisMap map = RandomPlanes();
+  for (size_t i = 0; i < map.costs.size(); ++i)
+    map.costs[i] = 0.1f * static_cast<float>(i % 20) + 0.05f;
   const DepthAndNormal all = WrittenMaps(map, kCamera);
   const WrittenDepths written =
       WriteMaps(map, kCamera, depth_path_, normal_path_, nullptr, {3, 5});
   const Map depth = ReadMap(depth_path_), normal = ReadMap(normal_path_);
   const size_t size = depth.data.size();
   size_t num_valid = 0;
+  CostHistogram costs;
   for (size_t i = 0; i < size; ++i) {
     const bool inside = all.depth.data[i] >= 3 && all.depth.data[i] <= 5;
     num_valid += inside;
+    if (inside) costs.Add(map.costs[i]);
     EXPECT_EQ(depth.data[i], inside ? all.depth.data[i] : 0);
     EXPECT_EQ(normal.data[i] != 0, inside);
   }
   EXPECT_EQ(written.num_valid, num_valid);
   EXPECT_EQ(written.num_dropped, size - num_valid);
+  EXPECT_EQ(written.costs.bins, costs.bins);
 }
 
 // Several bands of rows, the last of which is not full.

@@ -14,6 +14,7 @@ class RunStatisticsTest : public testing::Test {
     StageResult result;
     result.valid_pixel_share = valid;
     result.losses[FilterCriterion::kRange] = range_loss;
+    result.costs.emplace().bins[1] = static_cast<uint64_t>(100 * valid);
     Camera camera = {};
     camera.width = camera.height = 10;
     statistics_.Add(image, true, stage, "geometric", camera, result);
@@ -31,6 +32,9 @@ TEST_F(RunStatisticsTest, AMapThatIsMadeAgainCountsOnce) {
   EXPECT_EQ(summary.num_computed, 2);
   EXPECT_DOUBLE_EQ(summary.valid_pixel_share.value(), 0.8);
   EXPECT_DOUBLE_EQ(summary.filter_losses.at(FilterCriterion::kRange), 0.2);
+  const nlohmann::json record = statistics_.Record({}, summary);
+  EXPECT_EQ(record["cost_histogram"][1], 160);
+  EXPECT_EQ(record["images"]["b"]["geometric"]["cost_histogram"][1], 100);
 }
 
 TEST_F(RunStatisticsTest, ASourceThatFailedIsKnownButNoFailedImage) {

@@ -161,12 +161,42 @@ TEST(ReportHtmlTest, ColumnsSortAsWhatTheyHold) {
        at = page.find("data-v=\"", at + 1)) {
     const size_t begin = at + 8;
     const std::string value = page.substr(begin, page.find('"', begin) - begin);
-    if (++num_cells % 10 == 1) continue;  // the name
+    if (++num_cells % 11 == 1) continue;  // the name
     size_t length = 0;
     EXPECT_NO_THROW(std::stod(value, &length)) << value;
     EXPECT_EQ(length, value.size()) << value;
   }
-  EXPECT_EQ(num_cells, 20u);
+  EXPECT_EQ(num_cells, 22u);
+}
+
+TEST(ReportHtmlTest, ShowsTheCostsOfEachImageAndOfAll) {
+  ReportData data;
+  data.images.resize(2);
+  for (ReportedImage& image : data.images) {
+    image.has_maps = true;
+    image.costs.emplace();
+  }
+  data.images[0].costs->bins[1] = 30;
+  data.images[1].costs->bins[5] = 10;
+  const std::string page = ReportHtml(data);
+  EXPECT_THAT(page, HasSubstr("0.1 to 0.2: 75.0 %"));
+  EXPECT_THAT(page, HasSubstr("0.5 to 0.6: 25.0 %"));
+  EXPECT_THAT(page, HasSubstr("median 0.15"));
+  EXPECT_THAT(page, HasSubstr("median 0.55"));
+  EXPECT_THAT(page, Not(HasSubstr("not known")));
+  EXPECT_THAT(page, Not(HasSubstr("Not known")));
+}
+
+TEST(ReportHtmlTest, SaysOfWhichMapsNoCostsAreKnown) {
+  ReportData data;
+  data.images.resize(3);
+  for (ReportedImage& image : data.images) image.has_maps = true;
+  data.images[1].costs.emplace().bins[0] = 1;
+  const std::string page = ReportHtml(data);
+  EXPECT_THAT(page, HasSubstr("Not known of 2 of 3 images"));
+  EXPECT_THAT(page, HasSubstr("not known"));
+  data.images.clear();
+  EXPECT_THAT(ReportHtml(data), Not(HasSubstr("Matching costs")));
 }
 
 TEST(ReportHtmlTest, ExplainsEveryColour) {
