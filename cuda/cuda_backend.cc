@@ -7,6 +7,7 @@
 #include "src/base/error.h"
 #include "src/engine/phase_timer.h"
 #include "src/engine/sweeps.h"
+#include "src/engine/work_estimate.h"
 #include "src/gpu/band_planner.h"
 #include "src/gpu/problem_tables.h"
 
@@ -182,7 +183,7 @@ class CudaBackendImpl : public CudaBackend {
     for (const Sweep& sweep : SweepsOf(pass, random_key_)) {
       RunSweep(sweep, state, nullptr, control);
       if (step < num_steps && control.progress) {
-        control.progress(static_cast<double>(++step) / num_steps);
+        control.progress(StepsWork(pass, ++step) / PassWork(pass));
       }
     }
     Finish();

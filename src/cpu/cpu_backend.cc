@@ -3,6 +3,7 @@
 #include "src/cpu/cpu_views.h"
 #include "src/engine/sweeps.h"
 #include "src/engine/visit_params.h"
+#include "src/engine/work_estimate.h"
 
 #include <atomic>
 #include <optional>
@@ -61,7 +62,7 @@ class CpuBackend : public Backend {
     for (const Sweep& sweep : SweepsOf(pass, random_key_)) {
       RunSweep(params, pattern, sweep, state, control);
       if (step < num_steps && control.progress)
-        control.progress(static_cast<double>(++step) / num_steps);
+        control.progress(StepsWork(pass, ++step) / PassWork(pass));
     }
     map->Touch();
   }

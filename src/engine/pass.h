@@ -69,9 +69,9 @@ struct Pass {
   int first_color() const { return half_visits ? 1 : 0; }
   // Half-sweeps that count for the progress: those with matching costs.
   int NumSteps() const {
-    return (start == StartFrom::kStored ? 0 : 2) +
-           (2 - first_color()) * num_iterations;
+    return NumStartSteps() + (2 - first_color()) * num_iterations;
   }
+  int NumStartSteps() const { return start == StartFrom::kStored ? 0 : 2; }
 };
 
 }  // namespace hpm

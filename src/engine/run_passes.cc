@@ -5,6 +5,7 @@
 #include "src/engine/mine_regions.h"
 #include "src/engine/phase_timer.h"
 #include "src/engine/visit_params.h"
+#include "src/engine/work_estimate.h"
 #include "src/prior/build_prior.h"
 #include "src/prior/weak_regions.h"
 
@@ -108,14 +109,14 @@ void RunPasses(Backend* backend,
     if (stage.passes.front().start == StartFrom::kMissing)
       searched = ForgetTextured(*views.ref.image, params, map);
   }
-  const double num_passes = static_cast<double>(stage.passes.size());
-  for (size_t i = 0; i < stage.passes.size(); ++i) {
-    const Pass& pass = stage.passes[i];
+  const double work = StageWork(stage);
+  double work_done = JudgeWork(stage);
+  for (const Pass& pass : stage.passes) {
+    work_done += PriorWork(pass);
     RunControl pass_control = control;
     pass_control.progress = [&](double fraction) {
-      if (control.progress) {
-        control.progress((static_cast<double>(i) + fraction) / num_passes);
-      }
+      if (control.progress)
+        control.progress((work_done + fraction * PassWork(pass)) / work);
     };
     if (pass.kind == PassKind::kPrior) {
       PhaseTimer timer(times, "build prior");
@@ -146,6 +147,7 @@ void RunPasses(Backend* backend,
       PhaseTimer timer(times, PhaseName(pass.kind));
       backend->Run(pass, schedule.pattern, map, pass_control);
     }
+    work_done += PassWork(pass);
     if (stage.from_coarser && pass.kind == PassKind::kBasic) {
       MergeLevels(carried, searched, map);
       carried = {};  // before priors are made

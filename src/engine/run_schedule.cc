@@ -2,6 +2,7 @@
 
 #include "src/core/limits.h"
 #include "src/engine/run_stage.h"
+#include "src/engine/work_estimate.h"
 
 #include <mutex>
 #include <vector>
@@ -61,14 +62,13 @@ class ScheduledRun {
     return static_cast<int>(spec_.schedule.stages.size());
   }
 
-  // Iterations times pixels.
   double WorkOf(int stage, int problem) const {
     const StageSpec& spec = spec_.schedule.stages[stage];
     const Camera camera =
         LevelCamera(spec_.problems[problem].camera, spec.level);
-    int iterations = 0;
-    for (const Pass& pass : spec.passes) iterations += pass.num_iterations;
-    return static_cast<double>(iterations) * camera.width * camera.height;
+    const bool is_filtered = stage + 1 == num_stages() && spec_.filter;
+    return (StageWork(spec) + (is_filtered ? kFilterWork : 0)) * camera.width *
+           camera.height;
   }
 
   double Fraction() const {

@@ -3,6 +3,7 @@
 #include "src/engine/confidence.h"
 #include "src/engine/needed_views.h"
 #include "src/engine/phase_timer.h"
+#include "src/engine/work_estimate.h"
 #include "src/prior/upsample_prior.h"
 
 #include <algorithm>
@@ -160,15 +161,22 @@ void RunStage(const RunSpec& run,
     output.is_complete &=
         StartMap(spec, stage, problem, views, maps, &worker->map);
   }
+  output.is_final = stage + 1 == static_cast<int>(run.schedule.stages.size());
+  const double share_of_passes =
+      output.is_final && run.filter
+          ? StageWork(spec) / (StageWork(spec) + kFilterWork)
+          : 1;
+  const RunControl passes_control = {
+      control.cancel,
+      [&](double fraction) { control.progress(share_of_passes * fraction); }};
   RunPasses(backend,
             views,
             run.schedule,
             spec,
             run.params,
-            control,
+            passes_control,
             &worker->map,
             &output.seconds);
-  output.is_final = stage + 1 == static_cast<int>(run.schedule.stages.size());
   if (output.is_final && run.filter)
     Filter(*run.filter, spec.geometric, backend, control, &output);
   DropGaps(*views.ref.image, &output.keep);

@@ -2,6 +2,7 @@
 #include "src/engine/run_schedule.h"
 
 #include "src/engine/memory_stores.h"
+#include "src/engine/work_estimate.h"
 #include "tests/engine/still_backend.h"
 
 #include <functional>
@@ -214,6 +215,34 @@ TEST_F(RunScheduleTest, ProgressRisesToOneAndNamesThePlace) {
   }
   EXPECT_EQ(num_stage_ends, num_stages());
   EXPECT_DOUBLE_EQ(before, 1);
+}
+
+// The backend tells of the middle of each pass.
+TEST_F(RunScheduleTest, ProgressIsMeasuredInEstimatedWork) {
+  spec_.filter = MapFilter{{0.1f, 0.01f, 1, 2}};
+  double total = kFilterWork;
+  std::vector<double> middles;
+  for (int stage = 0; stage < num_stages(); ++stage) {
+    for (int p = 1; p < kNumImages; ++p) store_->left_out.emplace(stage, p);
+    const StageSpec& spec = spec_.schedule.stages[stage];
+    const double pixels = 1.0 / (1 << (2 * spec.level));
+    double work = JudgeWork(spec);
+    for (const Pass& pass : spec.passes) {
+      middles.push_back(total - kFilterWork +
+                        pixels * (work + 0.5 * PassWork(pass)));
+      work += PassWork(pass);
+    }
+    total += pixels * StageWork(spec);
+  }
+  std::vector<double> told;
+  RunEvents events;
+  events.progress = [&](const RunProgress& at) {
+    if (at.problem >= 0) told.push_back(at.fraction);
+  };
+  Run(events);
+  ASSERT_EQ(told.size(), middles.size());
+  for (size_t i = 0; i < told.size(); ++i)
+    EXPECT_NEAR(told[i], middles[i] / total, 1e-9) << i;
 }
 
 // As COLMAP does for images with few sources.
