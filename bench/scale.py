@@ -23,9 +23,10 @@ import zlib
 
 import numpy as np
 
+from proc import MIB, cpu_seconds, peak_bytes
+
 SPACING = 10.0
 HEIGHT = 50.0
-MIB = 1 << 20
 
 
 def write_png(path, grey):
@@ -102,19 +103,6 @@ def make(folder, num_images, num_points, track, width, height, sources, seed=1):
     (folder / "stereo/patch-match.cfg").write_text(
         "".join(f"{name}\n__auto__, {sources}\n" for name in names)
     )
-
-
-def cpu_seconds(pid):
-    fields = pathlib.Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()
-    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
-
-
-def peak_bytes(pid):
-    """That of wait4 would be this script's, if it is larger."""
-    for line in pathlib.Path(f"/proc/{pid}/status").read_text().splitlines():
-        if line.startswith("VmHWM:"):
-            return 1024 * int(line.split()[1])
-    return 0
 
 
 def run(command, num_images, planning_only):

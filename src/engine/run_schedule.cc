@@ -50,6 +50,7 @@ class ScheduledRun {
         needed_[s].push_back(p);
         total_work_ += WorkOf(s, p);
       }
+      work_until_.push_back(total_work_);
     }
   }
 
@@ -102,6 +103,8 @@ class ScheduledRun {
       RunProblem(worker, own);
     });
     if (!unreadable_.empty()) throw UnreadableImages(unreadable_);
+    // What was added up on the way is not exact.
+    done_work_ = work_until_[stage];
     event.number = event.num_problems;
     Tell(events_.progress, event);
   }
@@ -155,6 +158,7 @@ class ScheduledRun {
   std::vector<bool> has_failed_;          // by problem
   std::vector<std::vector<int>> needed_;  // problems, by stage
   double total_work_ = 0, done_work_ = 0;
+  std::vector<double> work_until_;  // the end of each stage
   int num_started_ = 0;  // of the stage
   UnreadableImages::Reasons unreadable_;
 };

@@ -1,4 +1,5 @@
 """The benchmarks that need nothing but hpm_mvs run to their end and report."""
+import importlib.util
 import json
 import os
 import pathlib
@@ -49,6 +50,21 @@ class ScriptsTest(unittest.TestCase):
         row = table.splitlines()[-1].split("|")
         self.assertEqual([cell.strip() for cell in row[1:4]], ["64x48", "3", "1"])
         self.assertGreater(int(row[4]), 10)
+
+    def test_eta(self):
+        table = output_of(sys.executable, BENCH / "eta.py", "--hpm_mvs", HPM_MVS, "--scene", self.scene,
+                          "--out", self.out, "--", "--Hpm.num_iterations", 20)
+        for clock in ("the clock", "CPU time"):
+            self.assertRegex(table, f"by {clock}: [0-9.]+ % of the run")
+        record = json.loads(self.out.read_text())
+        self.assertEqual(record["progress"][-1]["fraction"], 1)
+        self.assertEqual(output_of(sys.executable, BENCH / "eta.py", "--only_report", self.out), table)
+
+    @unittest.skipIf(importlib.util.find_spec("numpy") is None, "no numpy")
+    def test_report_size(self):
+        line = output_of(sys.executable, BENCH / "report_size.py", "--hpm_mvs", HPM_MVS,
+                         "--images", 25, "--size", 64, 48, "--points", 1000)
+        self.assertRegex(line, r"exit 0, 25 images of 64x48: .* page 0\.[1-9] MB")
 
     def suite(self, *arguments):
         return subprocess.run(
