@@ -21,7 +21,7 @@ namespace hpm {
 struct StageResult {
   double valid_pixel_share = 0;
   double cost_evaluations_per_pixel = 0;
-  FilterLosses losses;        // of a final stage
+  FilterLosses losses;  // of a final stage
   // Of a final stage: what its maps publish.
   std::optional<CostHistogram> costs;
   PhaseTimes seconds;         // wall, per phase

@@ -63,8 +63,8 @@ std::vector<Command> MakeTable() {
             "Remove what is damaged, so that the next run makes only that; all else stays")}},
       {"report", "Write a page about a workspace's maps: pictures, why pixels were dropped, times, warnings",
        "One HTML file that needs nothing else, made of the maps, their stamps and the record of the last run: image, "
-       "depth and normals side by side, the share of pixels with a depth and what took the others, sources and the "
-       "points they share, the depth range beside that of the sparse points, time and memory, options, warnings with "
+       "depth and normals side by side, the share of pixels with a depth and their matching costs, what took "
+       "the others, sources and the points they share, the depth range beside that of the sparse points, time and memory, options, warnings with "
        "remedies; a click on a heading sorts. A run writes it at its end unless --Hpm.report 0 is given. Give the "
        "options of the run.",
        "0 done, also where maps are missing",

@@ -159,7 +159,7 @@ class ScheduledRun {
   std::vector<std::vector<int>> needed_;  // problems, by stage
   double total_work_ = 0, done_work_ = 0;
   std::vector<double> work_until_;  // the end of each stage
-  int num_started_ = 0;  // of the stage
+  int num_started_ = 0;             // of the stage
   UnreadableImages::Reasons unreadable_;
 };
 
