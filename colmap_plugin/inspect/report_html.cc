@@ -23,12 +23,12 @@ constexpr char kHead[] = R"(<!DOCTYPE html>
 <meta name="viewport" content="width=device-width">
 <title>Dense stereo report</title>
 <style>
-body{font:14px/1.4 system-ui,sans-serif;margin:1.5em;color:#222;background:#fff}
+body{font:14px/1.4 system-ui,sans-serif;margin:1em;color:#222;background:#fff}
 h1{font-size:1.4em}h2{font-size:1.1em;margin-top:1.6em}
-table{border-collapse:collapse}td,th{padding:.3em .6em;border-bottom:1px solid #ddd;text-align:left;vertical-align:top}
-#images th{cursor:pointer;position:sticky;top:0;background:#f4f4f4;white-space:nowrap}
+table{border-collapse:collapse}td,th{padding:.3em .4em;border-bottom:1px solid #ddd;text-align:left;vertical-align:top}
+#images th{cursor:pointer;position:sticky;top:0;background:#f4f4f4}
 td.n{text-align:right;font-variant-numeric:tabular-nums}img{display:block}
-.name{word-break:break-all;max-width:16em}.warn li{margin:.3em 0}.small{color:#666;font-size:.9em}
+.name{overflow-wrap:anywhere;min-width:6em;max-width:16em}.warn li{margin:.3em 0}.small{color:#666;font-size:.9em}
 svg text{font:11px system-ui,sans-serif}
 </style></head><body>
 )";

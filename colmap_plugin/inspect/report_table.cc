@@ -60,7 +60,7 @@ std::string Cell(const std::string& value, const std::string& shown) {
 
 // What became of the pixels, as a bar of coloured parts.
 std::string LossBar(const ReportedImage& image) {
-  constexpr double kWidth = 160;
+  constexpr double kWidth = 120;
   std::string parts;
   double x = 0;
   const auto add = [&](double share, const char* color, const std::string& of) {
@@ -117,7 +117,7 @@ std::string Costs(const ReportedImage& image) {
   if (!image.has_maps) return "";
   if (!image.costs) return "not known";
   const auto& bins = image.costs->bins;
-  return Svg({4, 20, "#1f77b4", "0", "2", {}}, {bins.begin(), bins.end()}) +
+  return Svg({3, 20, "#1f77b4", "0", "2", {}}, {bins.begin(), bins.end()}) +
          fmt::format("<span class=\"small\">median {:.2f}</span>",
                      image.costs->Median());
 }

@@ -108,6 +108,14 @@ class ReportInABrowser(CliTest):
             self.assertGreater(width * height, 1000)
             self.assertGreater(len(colors), 2 if "svg" in selector else 20, selector)
 
+    def test_a_window_of_1200_pixels_shows_all_columns(self):
+        dense = self.workspace(views=3, width=288, height=144)
+        self.assert_exit(self.run_tool(dense, *FAST), 0)
+        self.open_report(dense)
+        self.page.value(PICTURES)
+        self.assertLessEqual(*self.page.value(
+            "[document.documentElement.scrollWidth, document.documentElement.clientWidth]"))
+
     def test_a_page_that_does_otherwise_would_be_noticed(self):
         path = self.workspace().parent / "page.html"
         path.write_text("<img src='http://127.0.0.1:9/a.png'><script>throw 1</script>"
