@@ -260,15 +260,12 @@ HPM_HD void FindDifferent(const PixelVisit& visit,
       NearlySame(params, slopes, current, x, y) & candidates->exists;
 }
 
-// The rows of the matrix that belong to the batch.
-template <class Cost>
-HPM_HD void EvaluateBatch(const Cost& cost,
-                          const CandidateBatch& batch,
-                          Candidates* candidates) {
-  if (batch.size == 0) return;
+// The rows of the matrix that belong to the batch; costs[b * num_views + k] is
+// that of its plane b in view[k].
+HPM_HD void TakeCosts(const CandidateBatch& batch,
+                      const float* costs,
+                      Candidates* candidates) {
   const int num_views = candidates->num_views;
-  float costs[kNumRegions * kMaxViews];
-  cost.Photometric(batch.plane, batch.size, candidates->view, num_views, costs);
   for (int b = 0; b < batch.size; ++b) {
     for (int j = 0; j < num_views; ++j) {
       candidates->matrix[batch.region[b] * num_views + j] =
@@ -318,30 +315,62 @@ HPM_HD void ExtendRegions(const PixelVisit& visit,
   }
 }
 
+// A search for candidates between two batches of costs.
+struct CandidateSearch {
+  RegionSamples samples;
+  CandidateBatch batch;  // to be evaluated now, in candidates->view
+  uint32_t growing;
+  int extension;
+};
+
 // `draw`: random, in [0, 1).
+HPM_HD void BeginSearch(const PixelVisit& visit,
+                        float draw,
+                        CandidateSearch* search,
+                        Candidates* candidates) {
+  ChooseViews(visit, draw, candidates);
+  SampleRegions(visit, &search->samples, candidates);
+  FindDifferent(visit, &search->samples, candidates, &search->batch);
+  search->growing = candidates->exists;
+  search->extension = 0;
+}
+
+// Takes the costs of the batch; returns whether there is another one, which
+// may be empty.
+HPM_HD bool ContinueSearch(const PixelVisit& visit,
+                           const float* costs,
+                           CandidateSearch* search,
+                           Candidates* candidates) {
+  TakeCosts(search->batch, costs, candidates);
+  if (search->extension == 0) CopySharedCosts(search->samples, candidates);
+  if (search->extension == visit.pattern.max_extensions) return false;
+  ExtendRegions(visit,
+                Tau(visit.iteration, search->extension++),
+                &search->growing,
+                &search->samples,
+                candidates,
+                &search->batch);
+  return search->growing != 0;
+}
+
+// `draw`: as above.
 template <class Cost>
 HPM_HD void CollectCandidates(const PixelVisit& visit,
                               const Cost& cost,
                               float draw,
                               Candidates* candidates) {
-  ChooseViews(visit, draw, candidates);
-  RegionSamples samples;
-  SampleRegions(visit, &samples, candidates);
-  CandidateBatch batch;
-  FindDifferent(visit, &samples, candidates, &batch);
-  uint32_t growing = candidates->exists;
-  for (int extension = 0;; ++extension) {
-    EvaluateBatch(cost, batch, candidates);
-    if (extension == 0) CopySharedCosts(samples, candidates);
-    if (extension == visit.pattern.max_extensions) return;
-    ExtendRegions(visit,
-                  Tau(visit.iteration, extension),
-                  &growing,
-                  &samples,
-                  candidates,
-                  &batch);
-    if (growing == 0) return;
-  }
+  CandidateSearch search;
+  BeginSearch(visit, draw, &search, candidates);
+  float costs[kNumRegions * kMaxViews];
+  do {
+    if (search.batch.size > 0) {
+      cost.Photometric(search.batch.plane,
+                       search.batch.size,
+                       candidates->view,
+                       candidates->num_views,
+                       costs);
+    }
+  } while (ContinueSearch(visit, costs, &search, candidates));
 }
 
 }  // namespace hpm

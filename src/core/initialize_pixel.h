@@ -77,6 +77,15 @@ HPM_HD uint32_t ViewsToAsk(const VisitParams& params,
   return views != 0 ? views : all;
 }
 
+// The views of the mask; returns their number.
+HPM_HD int ListViews(uint32_t mask, int num_all_views, uint8_t* views) {
+  int num_views = 0;
+  for (int j = 0; j < num_all_views; ++j) {
+    if (mask >> j & 1) views[num_views++] = static_cast<uint8_t>(j);
+  }
+  return num_views;
+}
+
 // BestViewsCost() of the plane in the `asked` ones of the views.
 template <class Cost>
 HPM_HD float CostFromViews(const Cost& cost,
@@ -85,10 +94,7 @@ HPM_HD float CostFromViews(const Cost& cost,
                            int num_all_views,
                            uint32_t* mask) {
   uint8_t views[kMaxViews] = {};
-  int num_views = 0;
-  for (int j = 0; j < num_all_views; ++j) {
-    if (asked >> j & 1) views[num_views++] = static_cast<uint8_t>(j);
-  }
+  const int num_views = ListViews(asked, num_all_views, views);
   float costs[kMaxViews];
   cost.Photometric(&plane, 1, views, num_views, costs);
   return BestViewsCost(costs, views, num_views, mask);
@@ -110,21 +116,19 @@ HPM_HD float CostFromAllViews(const VisitParams& params,
       cost, plane, AllViews(params.num_views), params.num_views, &mask);
 }
 
-template <class Cost>
-HPM_HD void InitializePixel(const VisitParams& params,
-                            const PixelState& state,
-                            StartFrom start,
-                            const Cost& cost,
-                            Rng* rng,
-                            int col,
-                            int row) {
+// What the pixel starts from, where StartsAt().
+HPM_HD Plane StartPlane(const VisitParams& params,
+                        const PixelState& state,
+                        StartFrom start,
+                        Rng* rng,
+                        int col,
+                        int row) {
   const int at = row * state.width + col;
   const Vec3f ray =
       RayAt(params.ref, static_cast<float>(col), static_cast<float>(row));
   // What a random start does not read need not be there.
-  Plane plane = start == StartFrom::kRandom ? Plane{} : state.planes[at];
-  if (!StartsAt(start, plane)) return;
-  const bool has_plane = plane.distance > 0;
+  const Plane stored = start == StartFrom::kRandom ? Plane{} : state.planes[at];
+  const bool has_plane = stored.distance > 0;
   if (start == StartFrom::kPrior && state.priors != nullptr &&
       state.priors[at].distance > 0 &&
       !(has_plane && state.costs[at] < kCredibleCost)) {
@@ -134,12 +138,27 @@ HPM_HD void InitializePixel(const VisitParams& params,
     const float depth =
         DepthOnRay(prior, ray) *
         rng->Uniform(1 - kPriorDepthSpread, 1 + kPriorDepthSpread);
-    plane = PlaneOnRay(ray, depth, normal);
-  } else if (start == StartFrom::kRandom || !has_plane) {
+    return PlaneOnRay(ray, depth, normal);
+  }
+  if (start == StartFrom::kRandom || !has_plane) {
     const Vec3f normal = RandomNormal(ray, rng);
-    plane = PlaneOnRay(
+    return PlaneOnRay(
         ray, rng->Uniform(params.depth_min, params.depth_max), normal);
   }
+  return stored;
+}
+
+template <class Cost>
+HPM_HD void InitializePixel(const VisitParams& params,
+                            const PixelState& state,
+                            StartFrom start,
+                            const Cost& cost,
+                            Rng* rng,
+                            int col,
+                            int row) {
+  const int at = row * state.width + col;
+  if (start != StartFrom::kRandom && !StartsAt(start, state.planes[at])) return;
+  const Plane plane = StartPlane(params, state, start, rng, col, row);
   state.planes[at] = plane;
   state.costs[at] = CostFromViews(cost,
                                   plane,

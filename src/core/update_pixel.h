@@ -126,69 +126,132 @@ HPM_HD int RefinedPlanes(const PixelVisit& visit,
   return num_planes + kNumCombined;
 }
 
-template <class Cost>
-HPM_HD void UpdatePixel(const PixelVisit& visit, const Cost& cost, Rng* rng) {
-  const VisitParams& params = visit.params;
-  const PixelState& state = visit.state;
-  Candidates candidates;
-  CollectCandidates(visit, cost, rng->Uniform(), &candidates);
+// A visit once its candidates are known.
+struct PixelUpdate {
+  ViewWeights weights;
+  Best best;
+  bool propagated;  // `best` is one of the candidates
+  // Refined hypotheses.
+  int num_planes;
+  Plane planes[kNumRefined];
+};
 
+// Chooses the views that decide; returns whether the cost of the stored
+// hypothesis, update->best.plane, must be evaluated in them.
+HPM_HD bool ChooseWeights(const PixelVisit& visit,
+                          const Candidates& candidates,
+                          Rng* rng,
+                          PixelUpdate* update) {
+  const VisitParams& params = visit.params;
   float probability[kMaxViews];
   ViewProbabilities(params, candidates, visit.iteration, probability);
-  const ViewWeights weights = DrawViews(probability,
-                                        candidates.view,
-                                        candidates.num_views,
-                                        params.num_view_draws,
-                                        rng->Uniform());
+  update->weights = DrawViews(probability,
+                              candidates.view,
+                              candidates.num_views,
+                              params.num_view_draws,
+                              rng->Uniform());
+  update->best = {visit.state.planes[visit.at], 0, 0};
+  return candidates.current == 0;
+}
 
+// The prior of the pixel; null if it has none.
+HPM_HD const Plane* PriorOf(const PixelVisit& visit) {
+  const PixelState& state = visit.state;
   const bool has_prior =
       state.priors != nullptr && state.priors[visit.at].distance > 0;
-  const Plane* prior = has_prior ? &state.priors[visit.at] : nullptr;
-  const Judge<Cost> judge = {
-      visit,
-      cost,
-      weights,
-      {&params.prior_term,
-       prior,
-       has_prior ? DepthOnRay(*prior, visit.ray) : 0.0f}};
+  return has_prior ? &state.priors[visit.at] : nullptr;
+}
 
-  Best best = {state.planes[visit.at], 0, 0};
-  if (candidates.current != 0) {
+template <class Cost>
+HPM_HD Judge<Cost> JudgeOf(const PixelVisit& visit,
+                           const Cost& cost,
+                           const PixelUpdate& update) {
+  const Plane* prior = PriorOf(visit);
+  return {visit,
+          cost,
+          update.weights,
+          {&visit.params.prior_term,
+           prior,
+           prior != nullptr ? DepthOnRay(*prior, visit.ray) : 0.0f}};
+}
+
+// Takes the best of the candidates, whose photometric costs are known, and
+// proposes refined hypotheses. `costs`: of the stored hypothesis in the views
+// of the weights, where ChooseWeights() asked for it.
+template <class Cost>
+HPM_HD void Propagate(const PixelVisit& visit,
+                      const Cost& cost,
+                      const Candidates& candidates,
+                      const float* costs,
+                      Rng* rng,
+                      PixelUpdate* update) {
+  const VisitParams& params = visit.params;
+  const ViewWeights& weights = update->weights;
+  const Judge<Cost> judge = JudgeOf(visit, cost, *update);
+  Best& best = update->best;
+  const bool is_candidate = candidates.current != 0;
+  if (is_candidate) {
     const int same = LowestBit(candidates.current);
-    best.cost = WeightedMean(weights,
-                             &candidates.matrix[same * candidates.num_views],
-                             true,
-                             params.worst_cost);
-  } else {
-    PhotometricCosts(params, cost, weights, &best.plane, 1, &best.cost);
+    costs = &candidates.matrix[same * candidates.num_views];
   }
+  best.cost = WeightedMean(weights, costs, is_candidate, params.worst_cost);
   AddGeometricTerms(params, cost, weights, &best.plane, 1, &best.cost);
   best.bonus =
       judge.bonus(DepthOnRay(best.plane, visit.ray), best.plane.normal);
 
-  // Candidates: their photometric costs are known already.
-  static_assert(kNumRefined <= kNumRegions, "they share the arrays");
   Plane planes[kNumRegions];
-  float costs[kNumRegions];
+  float plane_costs[kNumRegions];
   int num_planes = 0;
   for (int i = 0; i < kNumRegions; ++i) {
     if (!((candidates.exists & ~candidates.current) >> i & 1)) continue;
     planes[num_planes] = candidates.plane[i];
-    costs[num_planes++] =
+    plane_costs[num_planes++] =
         WeightedMean(weights,
                      &candidates.matrix[i * candidates.num_views],
                      true,
                      params.worst_cost);
   }
-  const bool propagated = TakeBetter(judge, planes, num_planes, costs, &best);
+  update->propagated =
+      TakeBetter(judge, planes, num_planes, plane_costs, &best);
+  update->num_planes =
+      RefinedPlanes(visit, best.plane, judge.bonus.prior, rng, update->planes);
+}
 
-  num_planes = RefinedPlanes(visit, best.plane, prior, rng, planes);
-  PhotometricCosts(params, cost, weights, planes, num_planes, costs);
-  TakeBetter(judge, planes, num_planes, costs, &best);
+// Takes the best of the refined hypotheses, whose MeanCosts() these are, and
+// stores the result.
+template <class Cost>
+HPM_HD void FinishUpdate(const PixelVisit& visit,
+                         const Cost& cost,
+                         float* means,
+                         PixelUpdate* update) {
+  const PixelState& state = visit.state;
+  TakeBetter(JudgeOf(visit, cost, *update),
+             update->planes,
+             update->num_planes,
+             means,
+             &update->best);
+  state.planes[visit.at] = update->best.plane;
+  state.costs[visit.at] = update->best.cost;
+  if (update->propagated) state.masks[visit.at] = update->weights.mask;
+}
 
-  state.planes[visit.at] = best.plane;
-  state.costs[visit.at] = best.cost;
-  if (propagated) state.masks[visit.at] = weights.mask;
+// The visit as a whole, for a backend that answers each batch at once.
+template <class Cost>
+HPM_HD void UpdatePixel(const PixelVisit& visit, const Cost& cost, Rng* rng) {
+  Candidates candidates;
+  CollectCandidates(visit, cost, rng->Uniform(), &candidates);
+  PixelUpdate update;
+  const ViewWeights& weights = update.weights;
+  float costs[kMaxViews];
+  if (ChooseWeights(visit, candidates, rng, &update)) {
+    cost.Photometric(
+        &update.best.plane, 1, weights.view, weights.num_views, costs);
+  }
+  Propagate(visit, cost, candidates, costs, rng, &update);
+  float means[kNumRefined];
+  PhotometricCosts(
+      visit.params, cost, weights, update.planes, update.num_planes, means);
+  FinishUpdate(visit, cost, means, &update);
 }
 
 }  // namespace hpm

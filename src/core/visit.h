@@ -95,6 +95,19 @@ HPM_HD float WeightedMean(const ViewWeights& weights,
   return sum / weights.weight_sum;
 }
 
+// WeightedMean() of several planes; costs[i * weights.num_views + k] is that of
+// plane i in weights.view[k].
+HPM_HD void MeanCosts(const VisitParams& params,
+                      const ViewWeights& weights,
+                      const float* costs,
+                      int num_planes,
+                      float* means) {
+  for (int i = 0; i < num_planes; ++i) {
+    means[i] = WeightedMean(
+        weights, &costs[i * weights.num_views], false, params.worst_cost);
+  }
+}
+
 // Photometric costs of several planes; the batch goes through the backend at
 // once.
 template <class Cost>
@@ -103,13 +116,10 @@ HPM_HD void PhotometricCosts(const VisitParams& params,
                              const ViewWeights& weights,
                              const Plane* planes,
                              int num_planes,
-                             float* result) {
+                             float* means) {
   float costs[kNumRegions * kMaxViews];
   cost.Photometric(planes, num_planes, weights.view, weights.num_views, costs);
-  for (int i = 0; i < num_planes; ++i) {
-    result[i] = WeightedMean(
-        weights, &costs[i * weights.num_views], false, params.worst_cost);
-  }
+  MeanCosts(params, weights, costs, num_planes, means);
 }
 
 // In geometric passes adds the geometric term, which is never negative, to the

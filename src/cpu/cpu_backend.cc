@@ -1,13 +1,14 @@
 #include "src/cpu/cpu_backend.h"
 
 #include "src/cpu/cpu_views.h"
+#include "src/cpu/pixel_group.h"
 #include "src/engine/sweeps.h"
 #include "src/engine/visit_params.h"
 #include "src/engine/work_estimate.h"
 
+#include <algorithm>
 #include <atomic>
 #include <optional>
-#include <type_traits>
 
 #include <fmt/format.h>
 #include <tbb/blocked_range.h>
@@ -17,11 +18,20 @@
 namespace hpm {
 namespace {
 
-constexpr int kRowsPerTask = 4;
 constexpr size_t kPlanesPerTask = 64;
 
-template <SweepKind kKind>
-using Kind = std::integral_constant<SweepKind, kKind>;
+// Pixels are visited tile by tile. What a visit reads, windows in all sources
+// and hypotheses around, the next rows of the tile find in the core's cache;
+// rows of a whole image are too long for that. A tile's columns are those of
+// whole groups.
+constexpr int kTileCols = 8 * kMaxGroup;
+constexpr int kTileRows = 16;
+// Of small images, which fit into the cache anyhow, so that all threads have
+// work.
+constexpr int kSmallTileRows = 4;
+constexpr int kTilesPerThread = 8;
+
+int Ceil(int a, int b) { return (a + b - 1) / b; }
 
 class CpuBackend : public Backend {
  public:
@@ -127,46 +137,70 @@ class CpuBackend : public Backend {
                 const PixelState& state,
                 const RunControl& control) {
     const SweepScope scope = {params, pattern, sweep, state, nullptr, nullptr};
-    const auto visit = [&](auto kind, int col, int row) {
-      const CpuPixelCost cost = CostAt(col, row);
-      VisitPixel<kind.value>(scope, cost, col, row);
-      return cost.num_evaluations();
-    };
-    HalfSweep(state, sweep.color, control, [&](int col, int row) {
-      switch (sweep.kind) {
-        case SweepKind::kInitialize: {
-          const size_t at = static_cast<size_t>(row) * state.width + col;
-          if (!StartsAt(sweep.start, state.planes[at])) break;
-          return visit(Kind<SweepKind::kInitialize>(), col, row);
+    if (sweep.kind == SweepKind::kInitialize ||
+        sweep.kind == SweepKind::kUpdate) {
+      ForEachTile(state, control, [&](const Tile& tile) {
+        PixelGroup group(*views_, target_, scope);
+        for (int row = tile.row_begin; row < tile.row_end; ++row) {
+          if (control.cancel->cancelled()) break;
+          int col = tile.col_begin + (row + sweep.color) % 2;
+          while (col < tile.col_end) col = group.Visit(col, row);
         }
-        case SweepKind::kUpdate:
-          return visit(Kind<SweepKind::kUpdate>(), col, row);
-        default:
-          VisitPixel(params, sweep, state, col, row);
-      }
-      return uint64_t{0};
-    });
+        return group.num_evaluations();
+      });
+    } else {
+      HalfSweep(state, sweep.color, control, [&](int col, int row) {
+        VisitPixel(params, sweep, state, col, row);
+        return uint64_t{0};
+      });
+    }
   }
 
   // Calls visit(col, row) for all pixels of one colour; it returns the number
-  // of cost evaluations. Bands of rows run in parallel.
+  // of cost evaluations.
   template <class Visit>
   void HalfSweep(const PixelState& state,
                  int color,
                  const RunControl& control,
                  const Visit& visit) {
+    ForEachTile(state, control, [&](const Tile& tile) {
+      uint64_t num_evaluations = 0;
+      for (int row = tile.row_begin; row < tile.row_end; ++row) {
+        if (control.cancel->cancelled()) break;
+        int col = tile.col_begin + (row + color) % 2;
+        for (; col < tile.col_end; col += 2) num_evaluations += visit(col, row);
+      }
+      return num_evaluations;
+    });
+  }
+
+  struct Tile {
+    int col_begin, col_end, row_begin, row_end;
+  };
+
+  // Calls work(tile) for all tiles, in parallel; it returns the number of cost
+  // evaluations.
+  template <class Work>
+  void ForEachTile(const PixelState& state,
+                   const RunControl& control,
+                   const Work& work) {
+    const int across = Ceil(state.width, kTileCols);
+    const int wanted = kTilesPerThread * arena_.max_concurrency();
+    const bool small = across * Ceil(state.height, kTileRows) < wanted;
+    const int num_rows = small ? kSmallTileRows : kTileRows;
     arena_.execute([&] {
       tbb::parallel_for(
-          tbb::blocked_range<int>(0, state.height, kRowsPerTask),
-          [&](const tbb::blocked_range<int>& rows) {
-            uint64_t num_evaluations = 0;
-            for (int row = rows.begin(); row < rows.end(); ++row) {
-              if (control.cancel->cancelled()) return;
-              for (int col = (row + color) % 2; col < state.width; col += 2) {
-                num_evaluations += visit(col, row);
-              }
-            }
-            num_evaluations_ += num_evaluations;
+          0,
+          across * Ceil(state.height, num_rows),
+          [&](int i) {
+            if (control.cancel->cancelled()) return;
+            const int col = i % across * kTileCols;
+            const int row = i / across * num_rows;
+            num_evaluations_ +=
+                work(Tile{col,
+                          std::min(col + kTileCols, state.width),
+                          row,
+                          std::min(row + num_rows, state.height)});
           },
           tbb::simple_partitioner());
     });

@@ -29,7 +29,8 @@ std::vector<CpuTarget> CpuTargets() {
     if (target == HWY_SCALAR) continue;  // ours is the readable one
     targets.push_back({LowerCase(hwy::TargetName(target)),
                        SimdMatchCosts(target),
-                       SimdGeometricErrors(target)});
+                       SimdGeometricErrors(target),
+                       SimdLanes(target)});
   }
   targets.push_back({"scalar", &ScalarMatchCosts, &ScalarGeometricErrors});
   return targets;

@@ -13,6 +13,7 @@ struct CpuTarget {
   std::string name;  // "scalar", "sse4", "avx2", "avx3", "neon", ...
   MatchCostFunction match_costs = nullptr;
   GeometricErrorFunction geometric_errors = nullptr;
+  int num_lanes = 1;  // floats in a vector, at most kMaxGroup
 };
 
 // All targets that this binary holds and this machine can run, best first,

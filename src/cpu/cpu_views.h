@@ -43,31 +43,19 @@ class CpuViews {
   std::vector<Vec3f> src_centers_;
 };
 
-class CpuPixelCost {
+// What a visit asks of the sources' depth maps, at one pixel.
+class CpuPixelErrors {
  public:
-  CpuPixelCost(const CpuViews& views,
-               const CpuTarget& target,
-               float max_geometric_error,
-               int col,
-               int row)
+  CpuPixelErrors(const CpuViews& views,
+                 const CpuTarget& target,
+                 float max_geometric_error,
+                 int col,
+                 int row)
       : views_(views),
-        match_costs_(target.match_costs),
         geometric_errors_(target.geometric_errors),
         max_geometric_error_(max_geometric_error),
-        patch_(views.PatchAt(col, row)),
         col_(col),
         row_(row) {}
-
-  void Photometric(const Plane* planes,
-                   int num_planes,
-                   const uint8_t* views,
-                   int num_views,
-                   float* costs) const {
-    const MatchRequest request = {
-        col_, row_, planes, num_planes, views, num_views};
-    match_costs_(views_.match(), patch_, request, costs);
-    num_evaluations_ += static_cast<uint64_t>(request.num_pairs());
-  }
 
   bool HasDepth(int view) const { return views_.HasDepth(view); }
 
@@ -83,15 +71,43 @@ class CpuPixelCost {
                       errors);
   }
 
+ protected:
+  const CpuViews& views_;
+  GeometricErrorFunction geometric_errors_;
+  float max_geometric_error_;
+  int col_, row_;
+};
+
+// Asks for the costs of one pixel alone; where many are visited see
+// pixel_group.h.
+class CpuPixelCost : public CpuPixelErrors {
+ public:
+  CpuPixelCost(const CpuViews& views,
+               const CpuTarget& target,
+               float max_geometric_error,
+               int col,
+               int row)
+      : CpuPixelErrors(views, target, max_geometric_error, col, row),
+        match_costs_(target.match_costs) {
+    patches_.Set(0, views.PatchAt(col, row));
+  }
+
+  void Photometric(const Plane* planes,
+                   int num_planes,
+                   const uint8_t* views,
+                   int num_views,
+                   float* costs) const {
+    const MatchRequest request = {
+        {col_, row_, planes, num_planes, views, num_views}, 0, costs};
+    match_costs_(views_.match(), patches_, &request, 1);
+    num_evaluations_ += static_cast<uint64_t>(request.asked.num_pairs());
+  }
+
   uint64_t num_evaluations() const { return num_evaluations_; }
 
  private:
-  const CpuViews& views_;
   MatchCostFunction match_costs_;
-  GeometricErrorFunction geometric_errors_;
-  float max_geometric_error_;
-  RefPatch patch_;
-  int col_, row_;
+  RefPatches patches_;
   mutable uint64_t num_evaluations_ = 0;
 };
 

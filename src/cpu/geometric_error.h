@@ -13,7 +13,7 @@ namespace hpm {
 using GeometricErrorFunction = void (*)(const Camera& ref,
                                         const DepthView* depth_views,
                                         float max_error,
-                                        const MatchRequest& request,
+                                        const PlanesInViews& request,
                                         float* errors);
 
 }  // namespace hpm

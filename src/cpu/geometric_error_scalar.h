@@ -10,7 +10,7 @@ namespace hpm {
 void ScalarGeometricErrors(const Camera& ref,
                            const DepthView* depth_views,
                            float max_error,
-                           const MatchRequest& request,
+                           const PlanesInViews& request,
                            float* errors);
 
 }  // namespace hpm

@@ -191,7 +191,7 @@ HWY_INLINE VF ErrorOf(DF df,
 void GeometricErrors(const Camera& ref,
                      const DepthView* depth_views,
                      float max_error,
-                     const MatchRequest& request,
+                     const PlanesInViews& request,
                      float* errors) {
   const DF df;
   const int num_lanes = static_cast<int>(hn::Lanes(df));

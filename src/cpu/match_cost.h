@@ -28,7 +28,7 @@ struct MatchViews {
 };
 
 // All planes in all views, at one pixel.
-struct MatchRequest {
+struct PlanesInViews {
   int col, row;
   const Plane* planes;
   int num_planes;
@@ -38,11 +38,53 @@ struct MatchRequest {
   int num_pairs() const { return num_planes * num_views; }
 };
 
-// Computes costs[i * num_views + k] of planes[i] in view views[k]; `patch` is
-// that of the pixel.
+// Pixels whose requests are answered together: one per lane of the widest
+// vector.
+constexpr int kMaxGroup = 16;
+
+// RefPatch of the pixels of a group, as structure of arrays over pixels.
+struct RefPatches {
+  alignas(64) float weight[kPatchSize][kMaxGroup];
+  alignas(64) float weighted[kPatchSize][kMaxGroup];
+  alignas(64) float center[kMaxGroup];
+  alignas(64) float mean[kMaxGroup];
+  alignas(64) float variance[kMaxGroup];
+
+  void Set(int pixel, const RefPatch& patch) {
+    for (int k = 0; k < kPatchSize; ++k) {
+      weight[k][pixel] = patch.weight[k];
+      weighted[k][pixel] = patch.weighted[k];
+    }
+    center[pixel] = patch.center;
+    mean[pixel] = patch.mean;
+    variance[pixel] = patch.variance;
+  }
+
+  RefPatch Get(int pixel) const {
+    RefPatch patch;
+    for (int k = 0; k < kPatchSize; ++k) {
+      patch.weight[k] = weight[k][pixel];
+      patch.weighted[k] = weighted[k][pixel];
+    }
+    patch.center = center[pixel];
+    patch.mean = mean[pixel];
+    patch.variance = variance[pixel];
+    return patch;
+  }
+};
+
+// costs[i * num_views + k]: of planes[i] in view views[k].
+struct MatchRequest {
+  PlanesInViews asked;
+  int pixel;  // of the group
+  float* costs;
+};
+
+// Answers all requests; those of a pixel follow one another. `patches` are
+// those of the group.
 using MatchCostFunction = void (*)(const MatchViews& match,
-                                   const RefPatch& patch,
-                                   const MatchRequest& request,
-                                   float* costs);
+                                   const RefPatches& patches,
+                                   const MatchRequest* requests,
+                                   int num_requests);
 
 }  // namespace hpm

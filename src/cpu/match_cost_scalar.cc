@@ -6,10 +6,12 @@
 
 namespace hpm {
 
-void ScalarMatchCosts(const MatchViews& match,
-                      const RefPatch& patch,
-                      const MatchRequest& request,
-                      float* costs) {
+namespace {
+
+void CostsOf(const MatchViews& match,
+             const RefPatch& patch,
+             const PlanesInViews& request,
+             float* costs) {
   const float col = static_cast<float>(request.col);
   const float row = static_cast<float>(request.row);
   for (int p = 0; p < request.num_planes; ++p) {
@@ -44,6 +46,20 @@ void ScalarMatchCosts(const MatchViews& match,
                     static_cast<int>(match.max_v[view]) + 1,
                     match.has_gaps[view] != 0);
     }
+  }
+}
+
+}  // namespace
+
+void ScalarMatchCosts(const MatchViews& match,
+                      const RefPatches& patches,
+                      const MatchRequest* requests,
+                      int num_requests) {
+  for (int i = 0; i < num_requests; ++i) {
+    CostsOf(match,
+            patches.Get(requests[i].pixel),
+            requests[i].asked,
+            requests[i].costs);
   }
 }
 

@@ -8,8 +8,8 @@ namespace hpm {
 
 // See MatchCostFunction.
 void ScalarMatchCosts(const MatchViews& match,
-                      const RefPatch& patch,
-                      const MatchRequest& request,
-                      float* costs);
+                      const RefPatches& patches,
+                      const MatchRequest* requests,
+                      int num_requests);
 
 }  // namespace hpm

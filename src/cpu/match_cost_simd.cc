@@ -5,6 +5,7 @@
 
 #include "src/base/simd_targets.h"
 
+#include <algorithm>
 #include <iterator>
 
 #include <hwy/foreach_target.h>
@@ -17,13 +18,16 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using DF = hn::ScalableTag<float>;
 
-// Room for the last, partly filled vector.
-constexpr int kMaxLanes = 16;
-constexpr int kMaxPairs = kNumRegions * kMaxViews + kMaxLanes;
+// Pairs that are evaluated in one go, and room for one more plane in all views
+// and the rest of a vector.
+constexpr int kMaxLanes = kMaxGroup;
+constexpr int kFullPairs = 8 * kMaxLanes;
+constexpr int kMaxPairs = kFullPairs + kMaxViews + kMaxLanes;
 
-// The warp of each pair, one lane per pair, pair = plane * num_views + view.
+// Pairs of a plane and a view, of several pixels: a lane each.
 struct Pairs {
-  alignas(64) float origin[3][kMaxPairs];
+  int size = 0;
+  alignas(64) float origin[3][kMaxPairs];  // the warp
   alignas(64) float dcol[3][kMaxPairs];
   alignas(64) float drow[3][kMaxPairs];
   alignas(64) float max_u[kMaxPairs];
@@ -31,6 +35,8 @@ struct Pairs {
   alignas(64) int32_t stride[kMaxPairs];
   alignas(64) int32_t offset[kMaxPairs];
   alignas(64) int32_t has_gaps[kMaxPairs];
+  alignas(64) int32_t pixel[kMaxPairs];  // of the group
+  float* cost[kMaxPairs];                // where the result goes
 };
 
 // Constants of the chosen views, gathered into consecutive lanes.
@@ -78,68 +84,125 @@ HWY_INLINE auto Truncate(V v) {
 }
 #endif
 
-HWY_INLINE void FillPairs(const MatchViews& match,
-                          const MatchRequest& request,
-                          Pairs* pairs) {
-  const DF df;
-  const float col = static_cast<float>(request.col);
-  const float row = static_cast<float>(request.row);
-  const int num_planes = request.num_planes;
-  const int num_views = request.num_views;
-  const int lanes = static_cast<int>(hn::Lanes(df));
-  Chosen chosen;
-  for (int k = 0; k < num_views; ++k) {
-    const int view = request.views[k];
+HWY_INLINE void GatherViews(const MatchViews& match,
+                            const PlanesInViews& asked,
+                            Chosen* chosen) {
+  const float col = static_cast<float>(asked.col);
+  const float row = static_cast<float>(asked.row);
+  for (int k = 0; k < asked.num_views; ++k) {
+    const int view = asked.views[k];
     for (int i = 0; i < 3; ++i) {
       const float a = match.M[3 * i][view], b = match.M[3 * i + 1][view];
-      chosen.origin[i][k] = a * col + b * row + match.M[3 * i + 2][view];
-      chosen.dcol[i][k] = a;
-      chosen.drow[i][k] = b;
-      chosen.v[i][k] = match.v[i][view];
-    }
-    for (int p = 0; p < num_planes; ++p) {
-      const int pair = p * num_views + k;
-      pairs->max_u[pair] = match.max_u[view];
-      pairs->max_v[pair] = match.max_v[view];
-      pairs->stride[pair] = match.stride[view];
-      pairs->offset[pair] = match.offset[view];
-      pairs->has_gaps[pair] = match.has_gaps[view];
-    }
-  }
-  // A vector store past the views of one plane is overwritten by the next
-  // plane.
-  for (int p = 0; p < num_planes; ++p) {
-    const PlaneSlope m = SlopeOf(match.ref, request.planes[p]);
-    const auto m_col = hn::Set(df, m.col);
-    const auto m_row = hn::Set(df, m.row);
-    const auto m_here = hn::Set(df, m.col * col + m.row * row + m.constant);
-    for (int k = 0; k < num_views; k += lanes) {
-      const int pair = p * num_views + k;
-      for (int i = 0; i < 3; ++i) {
-        const auto v = hn::Load(df, chosen.v[i] + k);
-        hn::StoreU(hn::NegMulAdd(m_here, v, hn::Load(df, chosen.origin[i] + k)),
-                   df,
-                   pairs->origin[i] + pair);
-        hn::StoreU(hn::NegMulAdd(m_col, v, hn::Load(df, chosen.dcol[i] + k)),
-                   df,
-                   pairs->dcol[i] + pair);
-        hn::StoreU(hn::NegMulAdd(m_row, v, hn::Load(df, chosen.drow[i] + k)),
-                   df,
-                   pairs->drow[i] + pair);
-      }
+      chosen->origin[i][k] = a * col + b * row + match.M[3 * i + 2][view];
+      chosen->dcol[i][k] = a;
+      chosen->drow[i][k] = b;
+      chosen->v[i][k] = match.v[i][view];
     }
   }
 }
 
-// Costs of one vector of pairs, from `first` on.
+// One plane of the request in all its views. A vector store past the last view
+// is overwritten by what comes next.
+HWY_INLINE void AddPlane(const MatchViews& match,
+                         const MatchRequest& request,
+                         const Chosen& chosen,
+                         int plane,
+                         Pairs* pairs) {
+  const DF df;
+  const int lanes = static_cast<int>(hn::Lanes(df));
+  const PlanesInViews& asked = request.asked;
+  const float col = static_cast<float>(asked.col);
+  const float row = static_cast<float>(asked.row);
+  const PlaneSlope m = SlopeOf(match.ref, asked.planes[plane]);
+  const auto m_col = hn::Set(df, m.col);
+  const auto m_row = hn::Set(df, m.row);
+  const auto m_here = hn::Set(df, m.col * col + m.row * row + m.constant);
+  for (int k = 0; k < asked.num_views; k += lanes) {
+    const int pair = pairs->size + k;
+    for (int i = 0; i < 3; ++i) {
+      const auto v = hn::Load(df, chosen.v[i] + k);
+      hn::StoreU(hn::NegMulAdd(m_here, v, hn::Load(df, chosen.origin[i] + k)),
+                 df,
+                 pairs->origin[i] + pair);
+      hn::StoreU(hn::NegMulAdd(m_col, v, hn::Load(df, chosen.dcol[i] + k)),
+                 df,
+                 pairs->dcol[i] + pair);
+      hn::StoreU(hn::NegMulAdd(m_row, v, hn::Load(df, chosen.drow[i] + k)),
+                 df,
+                 pairs->drow[i] + pair);
+    }
+  }
+  for (int k = 0; k < asked.num_views; ++k) {
+    const int pair = pairs->size + k;
+    const int view = asked.views[k];
+    pairs->max_u[pair] = match.max_u[view];
+    pairs->max_v[pair] = match.max_v[view];
+    pairs->stride[pair] = match.stride[view];
+    pairs->offset[pair] = match.offset[view];
+    pairs->has_gaps[pair] = match.has_gaps[view];
+    pairs->pixel[pair] = request.pixel;
+    pairs->cost[pair] = request.costs + plane * asked.num_views + k;
+  }
+  pairs->size += asked.num_views;
+}
+
+// Moves what lies behind the first pairs to the front; less than a vector.
+HWY_INLINE void DropPairs(int count, Pairs* pairs) {
+  const DF df;
+  const hn::RebindToSigned<DF> di;
+  const auto move = [&](auto d, auto* lanes) {
+    hn::Store(hn::Load(d, lanes + count), d, lanes);
+  };
+  for (int i = 0; i < 3; ++i) {
+    move(df, pairs->origin[i]);
+    move(df, pairs->dcol[i]);
+    move(df, pairs->drow[i]);
+  }
+  move(df, pairs->max_u);
+  move(df, pairs->max_v);
+  move(di, pairs->stride);
+  move(di, pairs->offset);
+  move(di, pairs->has_gaps);
+  move(di, pairs->pixel);
+  pairs->size -= count;
+  for (int i = 0; i < pairs->size; ++i) pairs->cost[i] = pairs->cost[count + i];
+}
+
+// The values of the pairs' pixels, from values of `base` and the pixels behind
+// it.
+template <class D>
+class OfPixels {
+ public:
+  HWY_INLINE OfPixels(D df, const int32_t* pixels, int base)
+      : df_(df), base_(base), indices_(Indices(df, pixels, base)) {}
+
+  HWY_INLINE hn::Vec<D> operator()(const float* values) const {
+    return hn::TableLookupLanes(hn::Load(df_, values + base_), indices_);
+  }
+
+ private:
+  static HWY_INLINE auto Indices(D df, const int32_t* pixels, int base) {
+    const hn::RebindToSigned<D> di;
+    return hn::IndicesFromVec(df,
+                              hn::Sub(hn::Load(di, pixels), hn::Set(di, base)));
+  }
+
+  D df_;
+  int base_;
+  decltype(Indices(D(), nullptr, 0)) indices_;
+};
+
+// Costs of one vector of pairs, from `first` on, whose pixels lie in one vector
+// from `base` on.
 template <class D,
           class VF = hn::Vec<D>,
           class VI = hn::Vec<hn::RebindToSigned<D>>>
 HWY_INLINE VF PairCosts(D df,
                         const MatchViews& match,
-                        const RefPatch& patch,
+                        const RefPatches& patches,
                         const Pairs& pairs,
-                        int first) {
+                        int first,
+                        int base) {
   const hn::RebindToSigned<D> di;
   const hn::RebindToUnsigned<D> du;
   const VF zero = hn::Zero(df);
@@ -201,7 +264,8 @@ HWY_INLINE VF PairCosts(D df,
       hn::ShiftLeft<2>(hn::And(hn::Iota(di, 0), hn::Set(di, 3)));
   const VI second = hn::Add(first_byte, hn::Set(di, 1 - 256));
   const VI third = hn::Add(first_byte, hn::Set(di, 2 - 256));
-  const VF center = hn::Set(df, patch.center);
+  const OfPixels<D> of_pixels(df, pairs.pixel + first, base);
+  const VF center = of_pixels(patches.center);
   VF sum_s = zero, sum_ss = zero, sum_rs = zero;
   // All samples of a row, or of two where vectors are short, go through each
   // step together: while one waits for its last step the others fill the time.
@@ -252,80 +316,132 @@ HWY_INLINE VF PairCosts(D df,
       const VF bottom = hn::MulAdd(fu[k], hn::Sub(p11, p10), p10);
       sample[k] = hn::Sub(hn::MulAdd(fv[k], hn::Sub(bottom, top), top), center);
     }
-    const float* weight = patch.weight + j * kPatchAxis;
-    const float* weighted = patch.weighted + j * kPatchAxis;
+    const auto* weight = patches.weight + j * kPatchAxis;
+    const auto* weighted = patches.weighted + j * kPatchAxis;
     for (int k = 0; k < kSamples; ++k) {
-      const VF ws = hn::Mul(hn::Set(df, weight[k]), sample[k]);
+      const VF ws = hn::Mul(of_pixels(weight[k]), sample[k]);
       sum_s = hn::Add(sum_s, ws);
       sum_ss = hn::MulAdd(ws, sample[k], sum_ss);
-      sum_rs = hn::MulAdd(hn::Set(df, weighted[k]), sample[k], sum_rs);
+      sum_rs = hn::MulAdd(of_pixels(weighted[k]), sample[k], sum_rs);
     }
   }
   const VF min_variance = hn::Set(df, kMinVariance);
   const VF variance = hn::NegMulAdd(sum_s, sum_s, sum_ss);
-  const VF covariance = hn::NegMulAdd(hn::Set(df, patch.mean), sum_s, sum_rs);
+  const VF covariance = hn::NegMulAdd(of_pixels(patches.mean), sum_s, sum_rs);
   const VF scale = hn::Sqrt(
-      hn::Mul(hn::Set(df, patch.variance), hn::Max(variance, min_variance)));
+      hn::Mul(of_pixels(patches.variance), hn::Max(variance, min_variance)));
   const VF cost =
       hn::Min(hn::Max(hn::Sub(one, hn::Div(covariance, scale)), zero), worst);
   return hn::IfThenElse(
       hn::And(visible, hn::Ge(variance, min_variance)), cost, worst);
 }
 
-// Costs of the pairs from `first` on. What is left at the end goes through
-// shorter vectors.
+// Costs of one vector of pairs, from `first` on.
 template <class D>
-HWY_INLINE void CostsFrom(D df,
+HWY_INLINE void StoreCosts(D df,
+                           const MatchViews& match,
+                           const RefPatches& patches,
+                           const Pairs& pairs,
+                           int first,
+                           int base) {
+  alignas(64) float costs[kMaxLanes];
+  hn::Store(PairCosts(df, match, patches, pairs, first, base), df, costs);
+  const int count =
+      std::min(pairs.size - first, static_cast<int>(hn::Lanes(df)));
+  for (int i = 0; i < count; ++i) *pairs.cost[first + i] = costs[i];
+}
+
+// Costs of the pairs from `first` on, less than a vector. Shorter vectors do,
+// where the pixels, too, lie in one.
+template <class D>
+HWY_INLINE void StoreRest(D df,
                           const MatchViews& match,
-                          const RefPatch& patch,
+                          const RefPatches& patches,
                           const Pairs& pairs,
                           int first,
-                          int num_pairs,
-                          float* costs) {
-  const int lanes = static_cast<int>(hn::Lanes(df));
-  for (; first < num_pairs; first += lanes) {
-    const int left = num_pairs - first;
-    if constexpr (hn::MaxLanes(D()) > 4) {
-      if (left <= lanes / 2) {
-        CostsFrom(hn::Half<D>(), match, patch, pairs, first, num_pairs, costs);
-        return;
-      }
+                          int base) {
+  if constexpr (hn::MaxLanes(D()) > 4) {
+    const int half = static_cast<int>(hn::Lanes(df)) / 2;
+    const bool low = pairs.pixel[pairs.size - 1] < base + half;
+    const bool high = pairs.pixel[first] >= base + half;
+    if (pairs.size - first <= half && (low || high)) {
+      StoreRest(hn::Half<D>(),
+                match,
+                patches,
+                pairs,
+                first,
+                low ? base : base + half);
+      return;
     }
-    const auto cost = PairCosts(df, match, patch, pairs, first);
-    if (left >= lanes) {
-      hn::StoreU(cost, df, costs + first);
-    } else {
-      alignas(64) float last[kMaxLanes];
-      hn::Store(cost, df, last);
-      for (int i = 0; i < left; ++i) costs[first + i] = last[i];
-    }
+  }
+  StoreCosts(df, match, patches, pairs, first, base);
+}
+
+// Lanes behind the last pair: a copy of nothing, seen by no camera.
+HWY_INLINE void PadPairs(const MatchViews& match, Pairs* pairs) {
+  const int lanes = static_cast<int>(hn::Lanes(DF()));
+  for (int pair = pairs->size; pair % lanes != 0; ++pair) {
+    pairs->origin[2][pair] = -1;
+    pairs->dcol[2][pair] = pairs->drow[2][pair] = 0;
+    pairs->max_u[pair] = pairs->max_v[pair] = 0;
+    pairs->stride[pair] = 0;
+    pairs->offset[pair] = match.offset[0];
+    pairs->has_gaps[pair] = 0;
+    pairs->pixel[pair] = pairs->pixel[pairs->size - 1];
   }
 }
 
-void MatchCosts(const MatchViews& match,
-                const RefPatch& patch,
-                const MatchRequest& request,
-                float* costs) {
+// The requests of as many pixels as there are lanes, from `base` on.
+HWY_INLINE void CostsOfPixels(const MatchViews& match,
+                              const RefPatches& patches,
+                              const MatchRequest* begin,
+                              const MatchRequest* end,
+                              int base,
+                              Pairs* pairs) {
   const DF df;
   const int lanes = static_cast<int>(hn::Lanes(df));
-  const int num_pairs = request.num_pairs();
-  if (patch.variance < kMinVariance) {
-    for (int i = 0; i < num_pairs; ++i) costs[i] = kMaxCost;
-    return;
+  pairs->size = 0;
+  Chosen chosen;
+  for (const MatchRequest* request = begin; request != end; ++request) {
+    const PlanesInViews& asked = request->asked;
+    if (patches.variance[request->pixel] < kMinVariance) {
+      std::fill_n(request->costs, asked.num_pairs(), kMaxCost);
+      continue;
+    }
+    GatherViews(match, asked, &chosen);
+    for (int p = 0; p < asked.num_planes; ++p) {
+      AddPlane(match, *request, chosen, p, pairs);
+      if (pairs->size < kFullPairs) continue;
+      int first = 0;
+      for (; first + lanes <= pairs->size; first += lanes)
+        StoreCosts(df, match, patches, *pairs, first, base);
+      DropPairs(first, pairs);
+    }
   }
-  Pairs pairs;
-  FillPairs(match, request, &pairs);
-  // Lanes behind the last pair: a copy of nothing, seen by no camera.
-  for (int pair = num_pairs; pair % lanes != 0; ++pair) {
-    pairs.origin[2][pair] = -1;
-    pairs.dcol[2][pair] = pairs.drow[2][pair] = 0;
-    pairs.max_u[pair] = pairs.max_v[pair] = 0;
-    pairs.stride[pair] = 0;
-    pairs.offset[pair] = match.offset[0];
-    pairs.has_gaps[pair] = 0;
-  }
-  CostsFrom(df, match, patch, pairs, 0, num_pairs, costs);
+  PadPairs(match, pairs);
+  int first = 0;
+  for (; first + lanes <= pairs->size; first += lanes)
+    StoreCosts(df, match, patches, *pairs, first, base);
+  if (first < pairs->size) StoreRest(df, match, patches, *pairs, first, base);
 }
+
+void MatchCosts(const MatchViews& match,
+                const RefPatches& patches,
+                const MatchRequest* requests,
+                int num_requests) {
+  const int lanes = static_cast<int>(hn::Lanes(DF()));
+  const MatchRequest* const last = requests + num_requests;
+  Pairs pairs;
+  while (requests != last) {
+    const int base = requests->pixel / lanes * lanes;
+    const MatchRequest* end = requests;
+    while (end != last && end->pixel < base + lanes) ++end;
+    CostsOfPixels(match, patches, requests, end, base, &pairs);
+    requests = end;
+  }
+}
+
+int NumLanes() { return static_cast<int>(hn::Lanes(DF())); }
 
 }  // namespace HWY_NAMESPACE
 }  // namespace hpm
@@ -336,7 +452,13 @@ HWY_AFTER_NAMESPACE();
 namespace hpm {
 namespace {
 HWY_EXPORT(MatchCosts);
+HWY_EXPORT(NumLanes);
 }  // namespace
+
+int SimdLanes(int64_t target) {
+  return HWY_DISPATCH_TABLE(
+      NumLanes)[TargetIndex(target, std::size(HWY_DISPATCH_TABLE(NumLanes)))]();
+}
 
 MatchCostFunction SimdMatchCosts(int64_t target) {
   return HWY_DISPATCH_TABLE(MatchCosts)[TargetIndex(

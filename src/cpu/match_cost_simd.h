@@ -9,5 +9,7 @@ namespace hpm {
 
 // Of one of Highway's targets, among those that this machine can run.
 MatchCostFunction SimdMatchCosts(int64_t target);
+// Floats in a vector.
+int SimdLanes(int64_t target);
 
 }  // namespace hpm

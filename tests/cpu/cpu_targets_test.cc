@@ -2,6 +2,7 @@
 #include "src/cpu/cpu_views.h"
 #include "tests/cpu/scene_views.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -39,17 +40,18 @@ void Compare(const CpuTarget& target,
              const std::vector<Plane>& planes,
              const std::vector<uint8_t>& views,
              Comparison* result) {
-  const RefPatch patch = cpu_views.PatchAt(col, row);
   const int num_planes = static_cast<int>(planes.size());
   const int num_views = static_cast<int>(views.size());
   const float nan = std::numeric_limits<float>::quiet_NaN();
   std::vector<float> expected(planes.size() * views.size() + 1, nan);
   std::vector<float> actual = expected;
-  const MatchRequest request = {
-      col, row, planes.data(), num_planes, views.data(), num_views};
-  FindCpuTarget("scalar").match_costs(
-      cpu_views.match(), patch, request, expected.data());
-  target.match_costs(cpu_views.match(), patch, request, actual.data());
+  for (const auto& [each, costs] :
+       {std::pair(FindCpuTarget("scalar"), &expected),
+        std::pair(target, &actual)}) {
+    CpuPixelCost(cpu_views, each, 0, col, row)
+        .Photometric(
+            planes.data(), num_planes, views.data(), num_views, costs->data());
+  }
   EXPECT_TRUE(std::isnan(actual.back()));  // written behind the last pair
   for (size_t i = 0; i + 1 < actual.size(); ++i) {
     ASSERT_GE(actual[i], 0);  // false for NaN
@@ -207,12 +209,81 @@ TEST_P(EveryTarget, NonsensePlanesCostTheMaximum) {
                                      {{0, 0, -1}, -5}};
   const std::vector<uint8_t> views = {0, 1};
   std::vector<float> costs(planes.size() * 2);
-  GetParam().match_costs(
-      cpu_views.match(),
-      cpu_views.PatchAt(30, 20),
-      {30, 20, planes.data(), static_cast<int>(planes.size()), views.data(), 2},
-      costs.data());
+  CpuPixelCost(cpu_views, GetParam(), 0, 30, 20)
+      .Photometric(planes.data(),
+                   static_cast<int>(planes.size()),
+                   views.data(),
+                   2,
+                   costs.data());
   EXPECT_THAT(costs, testing::Each(kMaxCost));
+}
+
+// What a pixel asks for does not depend on who asks with it: groups of any
+// size, some without texture, some that ask for nothing.
+TEST_P(EveryTarget, GroupsHaveTheCostsOfTheirPixels) {
+  const std::vector<RenderedView> rendered =
+      RenderViews(MakeScene("sphere", Options(8)), 1);
+  ViewSet set = AsViewSet(rendered);
+  set.ref = WithGap(set.ref, 10);  // where nothing matches
+  for (int i = 7; i < kMaxViews; ++i) set.srcs.push_back(set.srcs[i % 7]);
+  const CpuViews cpu_views(set, MethodParams());
+  std::mt19937 random(5);
+  int num_requests = 0, num_finite = 0;
+  for (int round = 0; round < 60; ++round) {
+    const int num_pixels = 1 + static_cast<int>(random() % kMaxGroup);
+    const int max_planes = 1 + static_cast<int>(random() % kNumRegions);
+    const int max_views = 1 + static_cast<int>(random() % kMaxViews);
+    const int row = static_cast<int>(random() % 44);
+    RefPatches patches;
+    struct Asked {
+      std::vector<Plane> planes;
+      std::vector<uint8_t> views;
+      std::vector<float> costs;
+    };
+    std::vector<Asked> asked(num_pixels);
+    std::vector<MatchRequest> requests;
+    for (int pixel = 0; pixel < num_pixels; ++pixel) {
+      const int col = 2 * pixel + 4;
+      patches.Set(pixel, cpu_views.PatchAt(col, row));
+      if (random() % 4 == 0) continue;
+      Asked& of_pixel = asked[pixel];
+      for (size_t i = 0; i <= random() % max_planes; ++i)
+        of_pixel.planes.push_back(
+            SomeHypothesis(rendered[0], col, row, &random));
+      for (size_t i = 0; i <= random() % max_views; ++i)
+        of_pixel.views.push_back(static_cast<uint8_t>(random() % kMaxViews));
+      of_pixel.costs.resize(of_pixel.planes.size() * of_pixel.views.size(), -1);
+      requests.push_back({{col,
+                           row,
+                           of_pixel.planes.data(),
+                           static_cast<int>(of_pixel.planes.size()),
+                           of_pixel.views.data(),
+                           static_cast<int>(of_pixel.views.size())},
+                          pixel,
+                          of_pixel.costs.data()});
+    }
+    GetParam().match_costs(cpu_views.match(),
+                           patches,
+                           requests.data(),
+                           static_cast<int>(requests.size()));
+    for (const MatchRequest& request : requests) {
+      const PlanesInViews& alone = request.asked;
+      std::vector<float> expected(alone.num_pairs());
+      CpuPixelCost(cpu_views, GetParam(), 0, alone.col, alone.row)
+          .Photometric(alone.planes,
+                       alone.num_planes,
+                       alone.views,
+                       alone.num_views,
+                       expected.data());
+      EXPECT_EQ(asked[request.pixel].costs, expected) << request.pixel;
+      ++num_requests;
+      num_finite += std::count_if(expected.begin(),
+                                  expected.end(),
+                                  [](float cost) { return cost < kMaxCost; });
+    }
+  }
+  EXPECT_GT(num_requests, 200);
+  EXPECT_GT(num_finite, 1000);
 }
 
 // Source maps with steps, gaps and none at all, views in any number and order.
@@ -240,12 +311,12 @@ TEST_P(EveryTarget, AgreesWithTheScalarGeometricErrors) {
       std::vector<uint8_t> views;
       for (size_t k = 0; k <= random() % 7; ++k)
         views.push_back(static_cast<uint8_t>(random() % set.srcs.size()));
-      const MatchRequest request = {col,
-                                    row,
-                                    planes.data(),
-                                    static_cast<int>(planes.size()),
-                                    views.data(),
-                                    static_cast<int>(views.size())};
+      const PlanesInViews request = {col,
+                                     row,
+                                     planes.data(),
+                                     static_cast<int>(planes.size()),
+                                     views.data(),
+                                     static_cast<int>(views.size())};
       std::vector<float> expected(planes.size() * views.size() + 1, nan);
       std::vector<float> actual = expected;
       for (const auto& [target, errors] :

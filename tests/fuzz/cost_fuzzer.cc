@@ -225,15 +225,12 @@ void Check(const Input& input) {
   for (const CpuTarget& target : CpuTargets()) {
     constexpr float kUntouched = -7;
     std::vector<float> costs(num_pairs + 1, kUntouched);
-    target.match_costs(cpu_views.match(),
-                       cpu_views.PatchAt(input.col, input.row),
-                       {input.col,
-                        input.row,
-                        input.planes.data(),
-                        static_cast<int>(input.planes.size()),
-                        views.data(),
-                        static_cast<int>(views.size())},
-                       costs.data());
+    CpuPixelCost(cpu_views, target, 0, input.col, input.row)
+        .Photometric(input.planes.data(),
+                     static_cast<int>(input.planes.size()),
+                     views.data(),
+                     static_cast<int>(views.size()),
+                     costs.data());
     if (costs.back() != kUntouched)
       Fail(target, num_pairs, costs.back(), {kUntouched, 0});
     for (size_t i = 0; i < num_pairs; ++i) {
