@@ -51,6 +51,36 @@ class ScriptsTest(unittest.TestCase):
         self.assertEqual([cell.strip() for cell in row[1:4]], ["64x48", "3", "1"])
         self.assertGreater(int(row[4]), 10)
 
+    def test_large_images(self):
+        table = output_of(sys.executable, BENCH / "large_images.py", "--hpm_mvs", HPM_MVS,
+                          "--make_scene", os.environ["HPM_MAKE_SCENE"], "--width", 64, "--height", 48,
+                          "--sources", 3, "--rounds", 1, "--folder", self.scene.parent.parent,
+                          "--out", self.out)
+        self.assertRegex(table.splitlines()[-1], r"photometric \| \d+ \| [0-9.]+ \| \d+ \|")
+        self.assertIn("photometric", json.loads(self.out.read_text())["runs"][HPM_MVS][0])
+
+    def test_gate_fails_for_what_falls_by_more_than_its_noise(self):
+        sys.path.insert(0, str(BENCH))
+        import gate
+
+        def records(f1, spread=0.0):
+            part = {share: 50.0 for share in ("0.5%", "1%", "2%", "5%")}
+            return [{"scene": scene, "seed": seed, "thresholds": [0.1], "finest_share": "0.5%",
+                     **{name: part for name in ("all", "low_texture", "rest", "edges")},
+                     "f1": [f1[scene] + spread * seed], "accuracy": [90.0], "completeness": [60.0]}
+                    for scene in f1 for seed in range(3)]
+
+        accepted = records({"a": 50.0, "b": 60.0})
+        _, failures = gate.judge(records({"a": 50.0, "b": 60.0}), accepted)
+        self.assertEqual(failures, [])
+        lines, failures = gate.judge(records({"a": 53.0, "b": 58.0}), accepted)
+        self.assertEqual(failures, ["b: f1 -2.0 ± 0.3"])
+        self.assertIn("| f1 | +0.50 ± 0.21 | +3.0 ± 0.3 | -2.0 ± 0.3 |", lines)
+        _, failures = gate.judge(records({"a": 50.0, "b": 56.0}, spread=2.0), accepted)
+        self.assertEqual(failures, [])  # the seeds lie further apart than that
+        _, failures = gate.judge(records({"a": 49.75, "b": 59.75, "c": 10.0}), accepted)
+        self.assertEqual(failures, ["mean over scenes: f1 -0.25 ± 0.21"])
+
     def test_eta(self):
         table = output_of(sys.executable, BENCH / "eta.py", "--hpm_mvs", HPM_MVS, "--scene", self.scene,
                           "--out", self.out, "--", "--Hpm.num_iterations", 20)
