@@ -34,7 +34,14 @@ InputCache::InputCache(const Workspace& workspace,
 
 std::vector<std::shared_ptr<const GrayImage>> InputCache::Images(
     const std::vector<ImageRequest>& requests) {
-  std::vector<std::shared_ptr<const GrayImage>> images(requests.size());
+  std::vector<std::shared_ptr<const GrayImage>> images;
+  std::vector<Key> keys;
+  for (const ImageRequest& request : requests) {
+    keys.push_back(
+        KeyOf(Kind::kImage, request.image, level_ + request.more_levels));
+  }
+  for (const Input& kept : Kept(keys))
+    images.push_back(std::static_pointer_cast<const GrayImage>(kept));
   const auto get = [&](size_t i, IfLoading if_loading) {
     images[i] = Image(requests[i].image,
                       level_ + requests[i].more_levels,
@@ -47,7 +54,7 @@ std::vector<std::shared_ptr<const GrayImage>> InputCache::Images(
   arena.execute([&] {
     tbb::parallel_for(size_t{0}, requests.size(), [&](size_t i) {
       try {
-        get(i, IfLoading::kSkip);
+        if (images[i] == nullptr) get(i, IfLoading::kSkip);
       } catch (const UnreadableImages&) {
         // Collected below, with those that others are loading.
       }
@@ -69,7 +76,12 @@ std::vector<std::shared_ptr<const GrayImage>> InputCache::Images(
 
 std::vector<std::shared_ptr<const InverseDepthMap>> InputCache::InverseDepths(
     const std::vector<DepthRequest>& requests) {
-  std::vector<std::shared_ptr<const InverseDepthMap>> maps(requests.size());
+  std::vector<std::shared_ptr<const InverseDepthMap>> maps;
+  std::vector<Key> keys;
+  for (const DepthRequest& request : requests)
+    keys.push_back(KeyOf(Kind::kDepth, request.image, request.more_levels));
+  for (const Input& kept : Kept(keys))
+    maps.push_back(std::static_pointer_cast<const InverseDepthMap>(kept));
   // One after the other: all threads share the pixels of one.
   for (const IfLoading if_loading : {IfLoading::kSkip, IfLoading::kWait}) {
     for (size_t i = 0; i < requests.size(); ++i) {
@@ -90,6 +102,18 @@ void InputCache::StartStage(int level) {
 void InputCache::ForgetDepths() {
   const std::lock_guard<std::mutex> lock(mutex_);
   inputs_.EraseIf([](Key key) { return IsDepth(key); });
+}
+
+InputCounts InputCache::counts() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return counts_;
+}
+
+std::vector<InputCache::Input> InputCache::Kept(const std::vector<Key>& keys) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  std::vector<Input> inputs;
+  for (const Key key : keys) inputs.push_back(inputs_.Find(key));
+  return inputs;
 }
 
 InputCache::Input InputCache::Get(
@@ -114,6 +138,8 @@ InputCache::Input InputCache::Get(
       return loading.get();
     }
     it->second = promise.get_future().share();
+    counts_.images += !IsDepth(key) && LevelOf(key) == 0;
+    counts_.depth_maps += IsDepth(key);
   }
   Input input;
   std::exception_ptr failure;

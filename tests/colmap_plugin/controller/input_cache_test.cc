@@ -84,6 +84,25 @@ TEST_F(InputCacheTest, ReadsAgainWhatDidNotFit) {
   EXPECT_THROW(Image(&cache, 1), UnreadableImages);
 }
 
+TEST_F(InputCacheTest, WhatIsLoadedDropsNothingElseThatIsAskedFor) {
+  InputCache cache(workspace_, 2 * kImageBytes, /*max_decodes=*/1);
+  const auto first = Image(&cache, 0);
+  Image(&cache, 1);
+  std::filesystem::remove(workspace_.ImagePath(0));
+  EXPECT_EQ(cache.Images({{2, 0}, {0, 0}}).back(), first);
+}
+
+TEST_F(InputCacheTest, CountsWhatItReads) {
+  const StageFiles files = WriteTruth(0);
+  InputCache cache = MakeCache(kPlenty);
+  cache.Images({{0, 0}, {1, 0}, {1, 1}});
+  cache.Images({{0, 0}, {2, 1}});
+  Depth(&cache, files);
+  Depth(&cache, files);
+  EXPECT_EQ(cache.counts().images, 3u);
+  EXPECT_EQ(cache.counts().depth_maps, 1u);
+}
+
 TEST_F(InputCacheTest, AStageGetsImagesOfItsLevel) {
   InputCache cache = MakeCache(kPlenty);
   cache.StartStage(1);
