@@ -16,9 +16,6 @@ struct StereoProblem {
   int ref_image = -1;           // image index
   std::vector<int> src_images;  // image indices, best first, without repeats
                                 // and without ref_image; all have a picture
-  // Those it would have if all images had a picture. Which have one may be
-  // known to some processes only; these are the same for all that share a run.
-  std::vector<int> wanted_sources;
   // To search, model units; see DepthRanges.
   float depth_min = 0;
   float depth_max = 0;
@@ -27,6 +24,10 @@ struct StereoProblem {
   // False: only a source of references, see SourceProblems(). Its maps are for
   // other problems and not published.
   bool is_reference = true;
+  // The sources it would have if all images had a picture. Which have one may
+  // be known to some processes only; these are the same for all that share a
+  // run.
+  std::vector<int> wanted_sources;
 };
 
 struct ProblemOptions {
