@@ -12,6 +12,7 @@ Needs numpy.
         --options --Hpm.quality low
 """
 import argparse
+import json
 import os
 import pathlib
 import struct
@@ -45,7 +46,7 @@ def write_png(path, grey):
     )
 
 
-def make(folder, num_images, num_points, track, width, height, sources, seed=1):
+def make(folder, num_images, num_points, track, width, height, sources, shuffle, seed=1):
     random = np.random.default_rng(seed)
     per_row = max(1, int(np.ceil(np.sqrt(num_images))))
     places = np.array([(i % per_row, i // per_row) for i in range(num_images)])
@@ -100,6 +101,8 @@ def make(folder, num_images, num_points, track, width, height, sources, seed=1):
             block["length"] = track
             block["track"]["image"] = np.take_along_axis(images, nearest, 1) + 1
             file.write(block.tobytes())
+    if shuffle:
+        random.shuffle(names)
     (folder / "stereo/patch-match.cfg").write_text(
         "".join(f"{name}\n__auto__, {sources}\n" for name in names)
     )
@@ -143,6 +146,7 @@ def main():
     parser.add_argument("--track", type=int, default=20)
     parser.add_argument("--sources", type=int, default=20)
     parser.add_argument("--size", type=int, nargs=2, default=(64, 48))
+    parser.add_argument("--shuffle", action="store_true", help="the order of patch-match.cfg")
     parser.add_argument("--planning_only", action="store_true")
     parser.add_argument("--workspace", type=pathlib.Path, help="kept, and used again if it exists")
     parser.add_argument("--options", nargs=argparse.REMAINDER, default=[])
@@ -151,10 +155,15 @@ def main():
         dense = arguments.workspace or pathlib.Path(folder) / "dense"
         if not dense.exists():
             make(dense, arguments.images, arguments.points, arguments.track,
-                 *arguments.size, arguments.sources)
+                 *arguments.size, arguments.sources, arguments.shuffle)
         run([arguments.hpm_mvs, "patch_match_stereo", "--workspace_path", dense,
              "--PatchMatchStereo.num_threads", "2", "--Hpm.report", "0", *arguments.options],
             arguments.images, arguments.planning_only)
+        record = dense / "stereo/hpm_mvs/run.json"
+        if record.exists():
+            told = json.loads(record.read_text())
+            print(", ".join(f"{told[key] / arguments.images:.2f} {key} per image"
+                            for key in ("images_decoded", "depth_maps_read")))
 
 
 if __name__ == "__main__":

@@ -136,17 +136,6 @@ int CountFinalMaps(const Workspace& workspace, const StagePlan& plan) {
   return count;
 }
 
-// What geometric stages need maps of beside the references.
-void AddSources(const Workspace& workspace,
-                const ModelOverview& overview,
-                const ControllerOptions& options,
-                const LogSink& log,
-                const CancelToken& stop,
-                std::vector<StereoProblem>* problems) {
-  if (!options.patch_match.geom_consistency) return;
-  AddSourceProblems(workspace, overview, options.problems, log, stop, problems);
-}
-
 }  // namespace
 
 PatchMatchController::PatchMatchController(const ControllerOptions& options,
@@ -213,7 +202,7 @@ RunSummary PatchMatchController::Run() {
   log_(LogLevel::kInfo,
        fmt::format("Configuration has {} problems...", problems.size()));
   WarnOfFarOrigin(workspace, problems, log_);
-  AddSources(workspace, overview, options_, log_, stop, &problems);
+  CompleteProblems(workspace, overview, options_, log_, stop, &problems);
 
   SetLevels(workspace, &options_);
   const Schedule schedule = MakeSchedule(MakeScheduleOptions(options_));
@@ -300,7 +289,7 @@ bool PatchMatchController::ComputeStages(const RunState& run) const {
     // problems.
     run.problems = ReadProblems(
         run.workspace, run.overview, options_.problems, nullptr, run.stop);
-    AddSources(
+    CompleteProblems(
         run.workspace, run.overview, options_, log_, run.stop, &run.problems);
     run.plan.Update();
     return false;
@@ -325,6 +314,7 @@ RunSummary PatchMatchController::Summarize(const RunState& run,
   RunSummary summary =
       run.statistics.Summarize(names, run.resources.backend_name, seconds);
   summary.planning_seconds = run.planning_seconds;
+  summary.inputs_read = run.resources.inputs->counts();
   summary.warnings = warnings_;
   summary.num_fusable = CountFinalMaps(run.workspace, run.plan);
   if (run.statistics.AnyComputed() || run.statistics.AnyFailed()) {

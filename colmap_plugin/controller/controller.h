@@ -3,6 +3,7 @@
 #pragma once
 
 #include "colmap_plugin/controller/filter_criterion.h"
+#include "colmap_plugin/controller/input_counts.h"
 #include "colmap_plugin/options/options.h"
 #include "src/base/cancel.h"
 #include "src/base/log.h"
@@ -46,6 +47,7 @@ struct RunSummary {
   int num_fusable = 0;
   double cost_evaluations_per_pixel = 0;
   uint64_t peak_memory_bytes = 0;
+  InputCounts inputs_read;
   std::string backend;  // as Backend::Name() has it
 };
 

@@ -3,6 +3,7 @@
 // another is reading already.
 #pragma once
 
+#include "colmap_plugin/controller/input_counts.h"
 #include "colmap_plugin/controller/lru_cache.h"
 #include "colmap_plugin/controller/stages.h"
 #include "src/engine/image_store.h"
@@ -44,12 +45,18 @@ class InputCache : public ImageStore {
   // When those of the stage before are of no use any more.
   void ForgetDepths();
 
+  InputCounts counts() const;
+
  private:
   using Input = std::shared_ptr<const void>;  // GrayImage or InverseDepthMap
   using Key = int64_t;                        // see KeyOf
   enum class IfLoading { kWait, kSkip };      // what another thread is loading
   enum class Keep { kUsed, kSpare };
 
+  // What the cache has, null where that is nothing. Asked for all that a
+  // problem needs before any of it is loaded, so that nothing of it is dropped
+  // for the rest.
+  std::vector<Input> Kept(const std::vector<Key>& keys);
   // What `load` returns or the cache has; null if it is skipped.
   Input Get(Key key,
             IfLoading if_loading,
@@ -67,9 +74,10 @@ class InputCache : public ImageStore {
   const int max_decodes_;
   int level_ = 0;
   // Held to look up and to keep, not to read: threads decode side by side.
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   LruCache<Key, void> inputs_;
   std::map<Key, std::shared_future<Input>> loading_;
+  InputCounts counts_;
 };
 
 }  // namespace hpm

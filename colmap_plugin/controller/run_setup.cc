@@ -1,5 +1,6 @@
 #include "colmap_plugin/controller/run_setup.h"
 
+#include "colmap_plugin/workspace/overlap_order.h"
 #include "colmap_plugin/workspace/source_problems.h"
 #include "src/engine/method.h"
 #include "src/engine/schedule.h"
@@ -9,15 +10,19 @@
 
 namespace hpm {
 
-void AddSourceProblems(const Workspace& workspace,
-                       const ModelOverview& overview,
-                       const ProblemOptions& options,
-                       const LogSink& log,
-                       const CancelToken& cancel,
-                       std::vector<StereoProblem>* problems) {
-  for (StereoProblem& problem :
-       SourceProblems(workspace, overview, *problems, options, log, cancel))
+void CompleteProblems(const Workspace& workspace,
+                      const ModelOverview& overview,
+                      const ControllerOptions& options,
+                      const LogSink& log,
+                      const CancelToken& cancel,
+                      std::vector<StereoProblem>* problems) {
+  OrderByOverlap(problems);
+  if (!options.patch_match.geom_consistency) return;
+  const size_t num_references = problems->size();
+  for (StereoProblem& problem : SourceProblems(
+           workspace, overview, *problems, options.problems, log, cancel))
     problems->push_back(std::move(problem));
+  OrderByOverlap(problems, num_references);
 }
 
 void SetLevels(const Workspace& workspace, ControllerOptions* options) {

@@ -12,13 +12,16 @@
 
 namespace hpm {
 
-// Problems of images that are only sources, behind the references.
-void AddSourceProblems(const Workspace& workspace,
-                       const ModelOverview& overview,
-                       const ProblemOptions& options,
-                       const LogSink& log,
-                       const CancelToken& cancel,
-                       std::vector<StereoProblem>* problems);
+// From the references, as ReadProblems() has them, to the problems of a run in
+// the order in which it works them off: references first, behind them images
+// that are only sources, where geometric stages need maps of these; both by
+// overlap.
+void CompleteProblems(const Workspace& workspace,
+                      const ModelOverview& overview,
+                      const ControllerOptions& options,
+                      const LogSink& log,
+                      const CancelToken& cancel,
+                      std::vector<StereoProblem>* problems);
 
 // --Hpm.num_levels, where the user leaves it to the method. The largest image
 // of the workspace decides for all, so that all have the same stages, whichever

@@ -30,7 +30,7 @@ class RunShare {
     return stage_ == "all" || stage_ == name;
   }
   // Whether each problem is the shard's. References are divided in their order,
-  // which is that of the cfg: neighbours there share sources. Images that are
+  // that of overlap: neighbours there share images. Images that are
   // only sources are divided in the order of the model, so that those who plan
   // with other sources agree about the rest.
   std::vector<bool> Problems(const std::vector<StereoProblem>& problems,

@@ -30,10 +30,7 @@ void PlannedRun::Plan(bool look_at_maps,
   const ModelOverview overview(workspace_, problem_options, cancel_);
   problems_ = ReadProblems(workspace_, overview, problem_options, log, cancel_);
   num_references_ = static_cast<int>(problems_.size());
-  if (options_.patch_match.geom_consistency) {
-    AddSourceProblems(
-        workspace_, overview, problem_options, log, cancel_, &problems_);
-  }
+  CompleteProblems(workspace_, overview, options_, log, cancel_, &problems_);
   options_.hpm.overwrite |= !look_at_maps;
   plan_ =
       std::make_unique<StagePlan>(workspace_,

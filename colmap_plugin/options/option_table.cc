@@ -150,8 +150,8 @@ std::vector<OptionSpec> MakeTable() {
       Hpm(kCommon, kNothing, "report", &H::report, Anything(),
           "Write stereo/report.html at the end: pictures, losses and times of all images, warnings with remedies"),
       Hpm(kExpert, kNothing, "shard", &H::shard, AnyShard(),
-          "Work only on part i of the images, divided in the order of patch-match.cfg into n; other processes do the "
-          "others (docs/cluster.md)"),
+          "Work only on part i of the images, divided by what they overlap with into n; other processes do the others "
+          "(docs/cluster.md)"),
       Hpm(kExpert, kNothing, "stage", &H::stage, Anything(),
           "Work only on this stage; its maps of the stage before must be there (exit 8 if not). `hpm_mvs status` names "
           "the stages; finish: computes nothing, removes what only other stages needed"),

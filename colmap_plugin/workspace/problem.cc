@@ -91,6 +91,9 @@ class ProblemReader {
         without_sources_.Add(entry.ref_name);
         continue;
       }
+      std::vector<int> wanted = sources;
+      wanted.resize(
+          std::min({wanted.size(), MostAutomatic(entry), MaxNumSources()}));
       TakeThoseWithPictures(workspace_, MostAutomatic(entry), &sources);
       if (!range) {
         without_range_.Add(entry.ref_name);
@@ -105,6 +108,7 @@ class ProblemReader {
       StereoProblem problem;
       problem.ref_image = ref;
       problem.src_images = std::move(sources);
+      problem.wanted_sources = std::move(wanted);
       problem.depth_min = range->min;
       problem.depth_max = range->max;
       problem.published = ranges_.Published(ref);

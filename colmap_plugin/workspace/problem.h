@@ -24,6 +24,10 @@ struct StereoProblem {
   // False: only a source of references, see SourceProblems(). Its maps are for
   // other problems and not published.
   bool is_reference = true;
+  // The sources it would have if all images had a picture. Which have one may
+  // be known to some processes only; these are the same for all that share a
+  // run.
+  std::vector<int> wanted_sources;
 };
 
 struct ProblemOptions {

@@ -67,6 +67,7 @@ std::vector<StereoProblem> SourceProblems(
         problem.src_images.push_back(reference->ref_image);
       TakeThoseWithPictures(workspace, max_num, &problem.src_images);
     }
+    problem.wanted_sources = problem.src_images;
     problem.depth_min = range.min;
     problem.depth_max = range.max;
     progress.Count();

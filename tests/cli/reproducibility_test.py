@@ -1,4 +1,6 @@
-"""Same seed and options, same bytes: for every number of threads."""
+"""Same seed and options, same bytes: for every number of threads and order of images."""
+import json
+import re
 import unittest
 
 from support import FAST, CliTest, map_files
@@ -18,6 +20,30 @@ class Reproducibility(CliTest):
         # Two images in flight.
         self.assert_same_maps(self.maps_of("--PatchMatchStereo.num_threads=4"), one)
         self.assertTrue(one != self.maps_of("--random_seed=7"))
+
+    def test_neighbours_follow_each_other_whatever_the_order_of_the_cfg(self):
+        # A row; the cache holds what one image needs.
+        options = [*FAST, "--PatchMatchStereo.cache_size=0.00005"]
+        maps, decoded = [], []
+        for order in ((0, 1, 2, 3, 4, 5, 6, 7), (3, 0, 7, 4, 1, 6, 2, 5)):
+            workspace = self.workspace(views=8)
+            names = sorted(path.name for path in (workspace / "images").iterdir())
+            sources = {i: [j for j in (i - 1, i + 1) if 0 <= j < 8] for i in range(8)}
+            (workspace / "stereo/patch-match.cfg").write_text("".join(
+                f"{names[i]}\n{', '.join(names[j] for j in sources[i])}\n" for i in order))
+            result = self.run_tool(workspace, *options)
+            self.assert_exit(result, 0)
+            maps.append(map_files(workspace))
+            lines = re.findall(r"Processing view (\d+) / 8 for view0(\d)", result.stdout)
+            stages = len(lines) // 8
+            self.assertEqual([int(number) for number, _ in lines], [*range(1, 9)] * stages)
+            worked = [int(image) for _, image in lines][:8]
+            self.assertEqual(worked, [*range(8)] if order[0] == 0 else [3, 4, 5, 6, 7, 2, 1, 0])
+            record = json.loads((workspace / "stereo/hpm_mvs/run.json").read_text())
+            decoded.append(record["images_decoded"])
+        self.assert_same_maps(*maps)
+        # Once per stage, but for the neighbours of the image where the row is cut.
+        self.assertLessEqual(decoded[1], decoded[0] + 2 * stages)
 
     def test_a_finished_workspace_is_left_alone_and_overwrite_computes_anew(self):
         workspace = self.workspace()

@@ -3,6 +3,7 @@ run, for every division, order and repetition."""
 import json
 import os
 import random
+import re
 import shutil
 import subprocess
 import unittest
@@ -118,6 +119,31 @@ class Shards(CliTest):
                     self.run_tool(self.dense, *OPTIONS, f"--Hpm.shard={i}/3", f"--Hpm.stage={stage}")
         self.run_share("0/1", "finish", 4)
         self.assert_same_maps(map_files(self.dense), map_files(whole))
+
+    def write_row(self, order):
+        """A cfg in which the sources of an image are its neighbours in a row."""
+        name = "view{:02}.png".format
+        (self.dense / "stereo/patch-match.cfg").write_text("".join(
+            f"{name(i)}\n{', '.join(name(j) for j in (i - 1, i + 1) if 0 <= j < 7)}\n"
+            for i in order))
+
+    def worked_on(self, shard, code=0):
+        result = self.run_share(shard, self.stages()[0], code)
+        return [int(n) for n in re.findall(r"Processing view \d+ / \d+ for view0(\d)", result.stdout)]
+
+    def test_a_shard_is_a_part_of_the_order_of_overlap(self):
+        self.write_row((2, 6, 3, 1, 0, 5, 4))
+        self.assertEqual(self.worked_on("1/2"), [5, 6, 1, 0])
+        self.assertEqual(self.worked_on("0/2"), [2, 3, 4])
+
+    def test_damage_that_only_one_shard_knows_of_does_not_change_the_division(self):
+        self.write_row((2, 6, 3, 1, 0, 5, 4))
+        image = self.dense / "images/view03.png"
+        data = image.read_bytes()
+        image.write_bytes(data[: len(data) // 2])
+        self.worked_on("1/2")  # needs it nowhere
+        self.assertEqual(set(self.worked_on("0/2", 4)), {2, 3, 4})
+        self.assertEqual(self.status()[1]["stages"][0]["needed"], 0)
 
     def test_a_whole_run_and_shards_exclude_each_other(self):
         slow = ["--Hpm.num_iterations=4000", "--PatchMatchStereo.num_threads=1"]

@@ -1,8 +1,10 @@
 #include "colmap_plugin/controller/input_cache.h"
 
+#include "src/base/platform/memory.h"
 #include "tests/colmap_plugin/controller/scene_workspace.h"
 #include "tests/colmap_plugin/controller/written_maps.h"
 
+#include <atomic>
 #include <thread>
 #include <vector>
 
@@ -10,6 +12,8 @@
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 namespace hpm {
 namespace {
@@ -82,6 +86,46 @@ TEST_F(InputCacheTest, ReadsAgainWhatDidNotFit) {
   ASSERT_NE(Image(&cache, 1), nullptr);
   std::filesystem::remove(workspace_.ImagePath(1));
   EXPECT_THROW(Image(&cache, 1), UnreadableImages);
+}
+
+TEST_F(InputCacheTest, WhatIsLoadedDropsNothingElseThatIsAskedFor) {
+  InputCache cache(workspace_, 2 * kImageBytes, /*max_decodes=*/1);
+  const auto first = Image(&cache, 0);
+  Image(&cache, 1);
+  std::filesystem::remove(workspace_.ImagePath(0));
+  EXPECT_EQ(cache.Images({{2, 0}, {0, 0}}).back(), first);
+}
+
+TEST_F(InputCacheTest, AskingAgainAndAgainTakesNoMoreMemory) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "sanitizers keep what is freed for a while";
+#endif
+  InputCache cache(workspace_, /*max_bytes=*/0, /*max_decodes=*/2);
+  tbb::task_arena of_backend(2);
+  const auto read_and_match = [&] {
+    for (int i = 0; i < 1500; ++i) {
+      cache.Images({{0, 0}, {1, 0}, {2, 0}});
+      of_backend.execute([] {
+        std::atomic<int> sum{0};
+        tbb::parallel_for(0, 20000, [&](int k) { sum += k; });
+      });
+    }
+  };
+  read_and_match();
+  const uint64_t before = PeakMemoryBytes();
+  read_and_match();
+  EXPECT_LT(PeakMemoryBytes() - before, 4u << 20);
+}
+
+TEST_F(InputCacheTest, CountsWhatItReads) {
+  const StageFiles files = WriteTruth(0);
+  InputCache cache = MakeCache(kPlenty);
+  cache.Images({{0, 0}, {1, 0}, {1, 1}});
+  cache.Images({{0, 0}, {2, 1}});
+  Depth(&cache, files);
+  Depth(&cache, files);
+  EXPECT_EQ(cache.counts().images, 3u);
+  EXPECT_EQ(cache.counts().depth_maps, 1u);
 }
 
 TEST_F(InputCacheTest, AStageGetsImagesOfItsLevel) {

@@ -92,6 +92,24 @@ TEST_F(ProblemTest, FormsThatMeanSomethingElseAreToldWithLineAndRightForm) {
   }
 }
 
+TEST_F(ProblemTest, WantedSourcesDoNotDependOnPictures) {
+  files_.WriteCfg(
+      "0.jpg\n__auto__, 2\n1.jpg\n0.jpg, 2.jpg\n2.jpg\n__all__\n"
+      "3.jpg\n__auto__, 20\n");
+  Workspace workspace = files_.Open();
+  const auto before = ReadProblems(workspace, {}, nullptr);
+  workspace.DropPicture(1);
+  workspace.DropPicture(2);
+  const auto after = ReadProblems(workspace, {}, nullptr);
+  ASSERT_EQ(before.size(), 4u);
+  ASSERT_EQ(after.size(), before.size());
+  for (size_t p = 0; p < before.size(); ++p) {
+    EXPECT_EQ(before[p].wanted_sources, before[p].src_images);
+    EXPECT_EQ(after[p].wanted_sources, before[p].wanted_sources);
+    EXPECT_NE(after[p].src_images, before[p].src_images);
+  }
+}
+
 TEST_F(ProblemTest, APlainListOfNamesIsReadAsColmapDoesWithOneWarning) {
   const auto problems = Read("0.jpg\n1.jpg\n2.jpg\n3.jpg\n");
   EXPECT_EQ(problems.size(), 2u);
@@ -327,6 +345,19 @@ TEST_F(WithoutTracksTest, TheNumberOfSourcesIsMetWithImagesThatHaveAPicture) {
               testing::UnorderedElementsAre(3, 4, 8, 9));
   EXPECT_EQ(problems[1].src_images.size(), 4u);
   EXPECT_FALSE(CanBeComputed(workspace, problems[1]));
+}
+
+TEST_F(WithoutTracksTest, WantedSourcesDoNotDependOnPictures) {
+  files_.WriteCfg("6.jpg\n__auto__, 4\n5.jpg\n__auto__, 4\n");
+  Workspace workspace = files_.Open();
+  const auto before = ReadProblems(workspace, {}, nullptr);
+  for (const int image : {5, 7}) workspace.DropPicture(image);
+  const auto after = ReadProblems(workspace, {}, nullptr);
+  for (const int p : {0, 1}) {
+    EXPECT_EQ(before[p].wanted_sources, before[p].src_images);
+    EXPECT_EQ(after[p].wanted_sources, before[p].wanted_sources);
+    EXPECT_NE(after[p].src_images, before[p].src_images);
+  }
 }
 
 TEST_F(WithoutTracksTest, TracksOfOneImageDoNotHelpFusion) {
