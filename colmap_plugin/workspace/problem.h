@@ -27,7 +27,7 @@ struct StereoProblem {
   // The sources it would have if all images had a picture. Which have one may
   // be known to some processes only; these are the same for all that share a
   // run.
-  std::vector<int> wanted_sources;
+  std::vector<int> wanted_sources = {};
 };
 
 struct ProblemOptions {

@@ -167,8 +167,9 @@ void RunStage(const RunSpec& run,
           ? StageWork(spec) / (StageWork(spec) + kFilterWork)
           : 1;
   const RunControl passes_control = {
-      control.cancel,
-      [&](double fraction) { control.progress(share_of_passes * fraction); }};
+      control.cancel, [&](double fraction) {
+        if (control.progress) control.progress(share_of_passes * fraction);
+      }};
   RunPasses(backend,
             views,
             run.schedule,
