@@ -19,7 +19,7 @@ if(NOT WIN32)
 endif()
 install(DIRECTORY src colmap_plugin DESTINATION include/hpm_mvs COMPONENT development
   FILES_MATCHING PATTERN "*.h"
-  PATTERN in_colmap EXCLUDE PATTERN wrapper EXCLUDE ${other_systems})
+  PATTERN in_colmap EXCLUDE PATTERN wrapper EXCLUDE PATTERN "*-inl.h" EXCLUDE ${other_systems})
 # Of cuda/, how the backend is made; what lies below it needs the CUDA toolkit.
 install(FILES cuda/cuda_backend.h cuda/cuda_devices.h
         DESTINATION include/hpm_mvs/cuda COMPONENT development)

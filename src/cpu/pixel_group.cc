@@ -3,6 +3,7 @@
 #include <algorithm>
 
 namespace hpm {
+
 struct PixelGroup::Member {
   // Leaves out what is written before it is read: there are hundreds of
   // millions of visits.
