@@ -80,7 +80,7 @@ struct MatchRequest {
   float* costs;
 };
 
-// Answers all requests; those of a pixel follow one another. `patches` are
+// Answers all requests, which stand in the order of their pixels. `patches` are
 // those of the group.
 using MatchCostFunction = void (*)(const MatchViews& match,
                                    const RefPatches& patches,

@@ -30,14 +30,7 @@ class CpuBackendTest : public testing::Test {
     options.height = kHeight;
     const auto rendered = RenderViews(MakeScene("sphere", options), 1);
     ViewSet views = AsViewSet(rendered);
-    for (size_t j = 0; j < views.srcs.size(); ++j) {
-      std::vector<float> inverse;
-      for (const float z : rendered[j + 1].truth.depth) {
-        inverse.push_back(1 / z);
-      }
-      views.srcs[j].inverse_depth =
-          std::make_shared<const InverseDepthMap>(InverseDepthMap::Of(inverse));
-    }
+    AddTrueDepths(rendered, 0, &views);
     return views;
   }
 
@@ -74,6 +67,31 @@ TEST_F(CpuBackendTest, OneAndTwoThreadsGiveTheSameBytes) {
   EXPECT_EQ(one.consistent, two.consistent);
   EXPECT_EQ(one.num_evaluations, two.num_evaluations);
   EXPECT_GT(one.num_evaluations, 0u);
+}
+
+// An image of several tiles, high and low ones: a random start asks all views
+// once for each pixel.
+TEST_F(CpuBackendTest, TilesHoldEveryPixelOnce) {
+  constexpr int kWide = 2 * 128 + 21, kHigh = 3 * 16 + 5;
+  SceneOptions options;
+  options.num_views = 3;
+  options.width = kWide;
+  options.height = kHigh;
+  const ViewSet views =
+      AsViewSet(RenderViews(MakeScene("tilted_plane", options), 1));
+  Pass start = kBasic;
+  start.num_iterations = 0;
+  start.median = false;
+  std::vector<HypothesisMap> maps;
+  for (const int num_threads : {1, 8}) {
+    const auto backend = MakeCpuBackend("auto", num_threads);
+    backend->SetViews(views, MethodParams());
+    maps.emplace_back(kWide, kHigh);
+    backend->Run(start, pattern_, &maps.back(), control_);
+    EXPECT_EQ(backend->num_cost_evaluations(), uint64_t{2} * kWide * kHigh);
+    for (const Plane& plane : maps.back().planes) ASSERT_GT(plane.distance, 0);
+  }
+  EXPECT_TRUE(SameMaps(maps[0], maps[1]));
 }
 
 TEST_F(CpuBackendTest, ForgottenViewsAreHeldNoLonger) {

@@ -23,12 +23,7 @@ ViewSet MakeViews() {
   const auto rendered = RenderViews(MakeScene("sphere", options), 1);
   ViewSet views = AsViewSet(rendered);
   views.ref = WithGap(views.ref, 9);
-  for (size_t j = 1; j < views.srcs.size(); ++j) {
-    std::vector<float> inverse;
-    for (const float z : rendered[j + 1].truth.depth) inverse.push_back(1 / z);
-    views.srcs[j].inverse_depth =
-        std::make_shared<const InverseDepthMap>(InverseDepthMap::Of(inverse));
-  }
+  AddTrueDepths(rendered, 1, &views);  // one has none
   return views;
 }
 

@@ -34,6 +34,18 @@ inline ViewSet AsViewSet(const std::vector<RenderedView>& views) {
   return set;
 }
 
+// The true depths of the sources from number `first` on.
+inline void AddTrueDepths(const std::vector<RenderedView>& rendered,
+                          size_t first,
+                          ViewSet* set) {
+  for (size_t j = first; j < set->srcs.size(); ++j) {
+    std::vector<float> inverse;
+    for (const float z : rendered[j + 1].truth.depth) inverse.push_back(1 / z);
+    set->srcs[j].inverse_depth =
+        std::make_shared<const InverseDepthMap>(InverseDepthMap::Of(inverse));
+  }
+}
+
 // The view with what lies left of `col` masked.
 inline View WithGap(const View& view, int col) {
   View masked = view;
