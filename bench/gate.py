@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The rule of docs/benchmarks.md as a gate: the default on all scenes, three seeds, against
 the figures of the last accepted state. Ends with 1 when it fails. The six scenes of
-docs/benchmarks.md take a quarter of an hour on two idle cores.
+docs/benchmarks.md take 22 CPU minutes by their table there.
 
     bench/gate.py --build build/release --scenes SCENES            # judge a change
     bench/gate.py --build build/release --scenes SCENES --renew    # once it is accepted
