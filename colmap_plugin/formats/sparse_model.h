@@ -9,6 +9,7 @@
 #include "src/base/huge_pages.h"
 #include "src/base/log.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -39,7 +40,7 @@ struct SparseImage {
       cam_from_world_translation;  // as in the file, may be non-finite
 };
 
-// Image index (see SparseModel::images) per element, repeats kept.
+// Image index (see SparseModel::images) per element, ascending, repeats kept.
 class SparseTrack {
  public:
   using value_type = int;
@@ -76,8 +77,11 @@ class SparsePoints {
     begin_.reserve(num_points + 1);
     elements_.reserve(num_elements);
   }
+  // The track may have any order.
   void Add(const Eigen::Vector3d& xyz, const std::vector<int>& track) {
-    elements_.insert(elements_.end(), track.begin(), track.end());
+    const auto added =
+        elements_.insert(elements_.end(), track.begin(), track.end());
+    std::sort(added, elements_.end());
     begin_.push_back(elements_.size());
     xyz_.push_back(xyz);
   }

@@ -20,13 +20,21 @@ AutomaticSources::AutomaticSources(const Workspace& workspace,
   }
 }
 
-std::vector<int> AutomaticSources::Best(int ref_image,
-                                        const std::optional<DepthRange>& range,
-                                        double min_angle,
-                                        size_t max_num) const {
+std::vector<std::vector<SourceCandidate>> AutomaticSources::Sharing(
+    const std::vector<int>& ref_images,
+    double min_angle,
+    const std::function<void()>& on_image) const {
+  return selector_.CandidatesOf(ref_images, min_angle, cancel_, on_image);
+}
+
+std::vector<int> AutomaticSources::Best(
+    int ref_image,
+    const std::vector<SourceCandidate>& sharing,
+    const std::optional<DepthRange>& range,
+    double min_angle,
+    size_t max_num) const {
   if (max_num == 0) return {};
-  std::vector<int> sources =
-      selector_.Select(ref_image, min_angle, /*max_num=*/-1, cancel_);
+  std::vector<int> sources = SelectWideEnough(sharing, /*max_num=*/-1);
   // Images whose tracks tell too little are not missed by others, either.
   AddOverlapping(ref_image,
                  range,
@@ -38,9 +46,12 @@ std::vector<int> AutomaticSources::Best(int ref_image,
 }
 
 std::vector<int> AutomaticSources::All(
-    int ref_image, const std::optional<DepthRange>& range) const {
-  std::vector<int> sources =
-      selector_.Select(ref_image, /*min_angle=*/0, /*max_num=*/-1, cancel_);
+    int ref_image,
+    const std::vector<SourceCandidate>& sharing,
+    const std::optional<DepthRange>& range) const {
+  std::vector<int> sources;
+  for (const SourceCandidate& candidate : sharing)
+    sources.push_back(candidate.image);
   if (is_badly_tracked_[ref_image]) {
     AddOverlapping(
         ref_image, range, /*min_angle=*/0, all_, all_.size(), &sources);

@@ -6,6 +6,7 @@
 #include "colmap_plugin/workspace/source_selection.h"
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -23,16 +24,26 @@ class AutomaticSources {
                    const SeenPoints& seen,
                    const CancelToken& cancel);
 
+  // Of each reference whom it shares points with, counted for min_angle
+  // (degrees): what Best() and All() choose from. on_image: as in
+  // SourceSelector::CandidatesOf().
+  std::vector<std::vector<SourceCandidate>> Sharing(
+      const std::vector<int>& ref_images,
+      double min_angle,
+      const std::function<void()>& on_image) const;
+
   // Best first. All that share points under at least min_angle (degrees), and
   // of others so many that max_num have a picture. `range`: the reference's
   // depths; without, only shared points count.
   std::vector<int> Best(int ref_image,
+                        const std::vector<SourceCandidate>& sharing,
                         const std::optional<DepthRange>& range,
                         double min_angle,
                         size_t max_num) const;
 
   // All usable images but the reference; those that see the same come first.
   std::vector<int> All(int ref_image,
+                       const std::vector<SourceCandidate>& sharing,
                        const std::optional<DepthRange>& range) const;
 
   bool SharesPoints(int image) const;

@@ -64,19 +64,9 @@ class ProblemReader {
              entry.ref_name);
         continue;
       }
-      choices.push_back({&entry, ref, std::nullopt, {}});
+      choices.push_back({&entry, ref, std::nullopt, {}, {}});
     }
-    PlanningProgress progress(
-        "Choosing source images", choices.size(), log_, cancel_);
-    tbb::parallel_for(size_t{0}, choices.size(), [&](size_t i) {
-      Choice& choice = choices[i];
-      choice.range = ranges_.ForImage(choice.ref);
-      if (choice.entry->sources != PatchMatchCfgEntry::Sources::kList) {
-        choice.sources =
-            AutomaticSourcesOf(*choice.entry, choice.ref, choice.range);
-      }
-      progress.Count();
-    });
+    ChooseSources(&choices);
 
     std::vector<StereoProblem> problems;
     for (Choice& choice : choices) {
@@ -132,8 +122,43 @@ class ProblemReader {
     const PatchMatchCfgEntry* entry;
     int ref;
     std::optional<DepthRange> range;
-    std::vector<int> sources;  // where they are not listed
+    // Where the sources are not listed:
+    std::vector<SourceCandidate> sharing;
+    std::vector<int> sources;
   };
+
+  // And their ranges, by which is found who sees the same place where tracks do
+  // not tell.
+  void ChooseSources(std::vector<Choice>* choices) const {
+    CountShared(choices);
+    PlanningProgress progress(
+        "Choosing source images", choices->size(), log_, cancel_);
+    tbb::parallel_for(size_t{0}, choices->size(), [&](size_t i) {
+      Choice& choice = (*choices)[i];
+      choice.range = ranges_.ForImage(choice.ref);
+      if (IsAutomatic(choice)) choice.sources = AutomaticSourcesOf(choice);
+      progress.Count();
+    });
+  }
+
+  void CountShared(std::vector<Choice>* choices) const {
+    std::vector<int> refs;
+    for (const Choice& choice : *choices) {
+      if (IsAutomatic(choice)) refs.push_back(choice.ref);
+    }
+    PlanningProgress progress(
+        "Counting shared points", refs.size(), log_, cancel_);
+    std::vector<std::vector<SourceCandidate>> sharing = automatic_.Sharing(
+        refs, options_.min_triangulation_angle, [&] { progress.Count(); });
+    auto of_next = sharing.begin();
+    for (Choice& choice : *choices) {
+      if (IsAutomatic(choice)) choice.sharing = std::move(*of_next++);
+    }
+  }
+
+  static bool IsAutomatic(const Choice& choice) {
+    return choice.entry->sources != PatchMatchCfgEntry::Sources::kList;
+  }
 
   PatchMatchCfg ReadCfg() const {
     if (!Exists(path_)) {
@@ -250,14 +275,13 @@ class ProblemReader {
 
   // With images that have no picture; for "__auto__, N" so many that N have
   // one.
-  std::vector<int> AutomaticSourcesOf(
-      const PatchMatchCfgEntry& entry,
-      int ref,
-      const std::optional<DepthRange>& range) const {
+  std::vector<int> AutomaticSourcesOf(const Choice& choice) const {
+    const PatchMatchCfgEntry& entry = *choice.entry;
     if (entry.sources == PatchMatchCfgEntry::Sources::kAll)
-      return automatic_.All(ref, range);
-    return automatic_.Best(ref,
-                           range,
+      return automatic_.All(choice.ref, choice.sharing, choice.range);
+    return automatic_.Best(choice.ref,
+                           choice.sharing,
+                           choice.range,
                            options_.min_triangulation_angle,
                            std::min(MostAutomatic(entry), MaxNumSources()));
   }

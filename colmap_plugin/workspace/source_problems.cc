@@ -49,6 +49,11 @@ std::vector<StereoProblem> SourceProblems(
       std::clamp(options.max_num_src_images, 0, kMaxNumSources));
   const std::vector<std::pair<int, std::vector<const StereoProblem*>>> sources(
       listed_by.begin(), listed_by.end());
+  std::vector<int> images;
+  for (const auto& [image, references] : sources) images.push_back(image);
+  const std::vector<std::vector<SourceCandidate>> sharing =
+      overview.automatic().Sharing(
+          images, options.min_triangulation_angle, [] {});
   std::vector<StereoProblem> result(sources.size());
   PlanningProgress progress(
       "Choosing sources of source images", sources.size(), log, cancel);
@@ -60,7 +65,7 @@ std::vector<StereoProblem> SourceProblems(
     const DepthRange range =
         overview.ranges().ForImage(image).value_or(RangeOf(references));
     problem.src_images = overview.automatic().Best(
-        image, range, options.min_triangulation_angle, max_num);
+        image, sharing[i], range, options.min_triangulation_angle, max_num);
     TakeThoseWithPictures(workspace, max_num, &problem.src_images);
     if (problem.src_images.empty()) {
       for (const StereoProblem* reference : references)

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <utility>
+
+#include <tbb/parallel_for.h>
 
 namespace hpm {
 namespace {
@@ -75,6 +78,15 @@ bool IsWideEnough(const SourceCandidate& candidate) {
   return candidate.num_narrow <= rank;
 }
 
+void SortBest(std::vector<SourceCandidate>* candidates) {
+  std::sort(candidates->begin(),
+            candidates->end(),
+            [](const SourceCandidate& a, const SourceCandidate& b) {
+              return a.num_shared != b.num_shared ? a.num_shared > b.num_shared
+                                                  : a.image < b.image;
+            });
+}
+
 // As COLMAP, which holds points as floats.
 bool IsFinite(const SparsePoint& point) {
   return point.xyz.cast<float>().allFinite();
@@ -90,6 +102,53 @@ SourceSelector::SourceSelector(const Workspace& workspace,
 
 std::vector<SourceCandidate> SourceSelector::Candidates(
     int ref_image, double min_angle, const CancelToken& cancel) const {
+  std::vector<SourceCandidate> candidates =
+      Count(ref_image, Others::kAll, min_angle, cancel);
+  SortBest(&candidates);
+  return candidates;
+}
+
+std::vector<std::vector<SourceCandidate>> SourceSelector::CandidatesOf(
+    const std::vector<int>& ref_images,
+    double min_angle,
+    const CancelToken& cancel,
+    const std::function<void()>& on_image) const {
+  const auto num_images = static_cast<size_t>(workspace_.num_images());
+  std::vector<std::vector<SourceCandidate>> of_refs(ref_images.size());
+  if (2 * ref_images.size() <= num_images) {
+    tbb::parallel_for(size_t{0}, ref_images.size(), [&](size_t i) {
+      of_refs[i] = Candidates(ref_images[i], min_angle, cancel);
+      on_image();
+    });
+    return of_refs;
+  }
+  std::vector<char> is_asked(num_images, 0);
+  for (const int ref : ref_images) is_asked[static_cast<size_t>(ref)] = 1;
+  std::vector<std::vector<SourceCandidate>> of_all(num_images);
+  tbb::parallel_for(size_t{0}, num_images, [&](size_t i) {
+    of_all[i] = Count(static_cast<int>(i), Others::kLater, min_angle, cancel);
+    if (is_asked[i]) on_image();
+  });
+  // From behind, so that of_all[i] still holds later images alone.
+  for (size_t i = num_images; i-- > 0;) {
+    for (const SourceCandidate& pair : of_all[i]) {
+      SourceCandidate mirrored = pair;
+      mirrored.image = static_cast<int>(i);
+      of_all[static_cast<size_t>(pair.image)].push_back(mirrored);
+    }
+  }
+  tbb::parallel_for(size_t{0}, ref_images.size(), [&](size_t i) {
+    of_refs[i] = std::move(of_all[static_cast<size_t>(ref_images[i])]);
+    SortBest(&of_refs[i]);
+  });
+  return of_refs;
+}
+
+std::vector<SourceCandidate> SourceSelector::Count(
+    int ref_image,
+    Others others,
+    double min_angle,
+    const CancelToken& cancel) const {
   std::vector<SourceCandidate> candidates;
   if (!workspace_.usable(ref_image)) return candidates;
   const SparsePoints& points = workspace_.model().points;
@@ -105,7 +164,10 @@ std::vector<SourceCandidate> SourceSelector::Candidates(
     if (!IsFinite(point)) return true;
     const Eigen::Vector3d ref_ray = ref_center - point.xyz;
     const double squared_length = ref_ray.squaredNorm();
-    for (const int image : point.track) {
+    // Tracks ascend, so later images come first from behind.
+    for (const int* at = point.track.end(); at != point.track.begin();) {
+      const int image = *--at;
+      if (image < ref_image && others == Others::kLater) break;
       if (image == ref_image) continue;
       SourceCandidate& candidate = shared[static_cast<size_t>(image)];
       if (candidate.num_shared == 0) images.push_back(image);
@@ -124,12 +186,6 @@ std::vector<SourceCandidate> SourceSelector::Candidates(
     candidate = {};
   }
   cancel.ThrowIfCancelled();
-  std::sort(candidates.begin(),
-            candidates.end(),
-            [](const SourceCandidate& a, const SourceCandidate& b) {
-              return a.num_shared != b.num_shared ? a.num_shared > b.num_shared
-                                                  : a.image < b.image;
-            });
   return candidates;
 }
 
@@ -150,13 +206,10 @@ bool SourceSelector::SharesPoints(int image, size_t num_points) const {
   return num_shared >= num_points;
 }
 
-std::vector<int> SourceSelector::Select(int ref_image,
-                                        double min_angle,
-                                        int max_num,
-                                        const CancelToken& cancel) const {
+std::vector<int> SelectWideEnough(
+    const std::vector<SourceCandidate>& candidates, int max_num) {
   std::vector<int> images;
-  for (const SourceCandidate& candidate :
-       Candidates(ref_image, min_angle, cancel)) {
+  for (const SourceCandidate& candidate : candidates) {
     if (max_num >= 0 && images.size() >= static_cast<size_t>(max_num)) break;
     if (IsWideEnough(candidate)) images.push_back(candidate.image);
   }

@@ -71,6 +71,7 @@ class TrackIndex {
     for (const int* element = track.begin(); element < track.end();
          element += kElementsPerCacheLine)
       __builtin_prefetch(element);
+    __builtin_prefetch(track.end() - 1);
   }
 
   const SparsePoints& points_;

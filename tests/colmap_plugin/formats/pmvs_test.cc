@@ -64,7 +64,7 @@ TEST_F(Pmvs, BundleTurnsFromBundlersAxesToOurs) {
   EXPECT_LT((ours - Eigen::Vector3d(1.3, -1.3, -5)).norm(), 1e-12);
   ASSERT_EQ(model.sparse.points.size(), 1u);
   EXPECT_EQ(model.sparse.points[0].xyz, Eigen::Vector3d(1, 2, -5));
-  EXPECT_THAT(model.sparse.points[0].track, ElementsAre(1, 0, 1));
+  EXPECT_THAT(model.sparse.points[0].track, ElementsAre(0, 1, 1));
 }
 
 TEST_F(Pmvs, AnUnregisteredBundleImageIsMarkedNotFatal) {

@@ -43,7 +43,7 @@ void ExpectTinyModel(const SparseModel& model) {
             Eigen::Vector3d(0.5, -1, 2));
   ASSERT_EQ(model.points.size(), 2u);
   EXPECT_EQ(model.points[0].xyz, Eigen::Vector3d(1, 2, 3));
-  EXPECT_THAT(model.points[0].track, ElementsAre(0, 1, 0));
+  EXPECT_THAT(model.points[0].track, ElementsAre(0, 0, 1));
   EXPECT_THAT(model.points[1].track, ElementsAre(2));
 }
 
@@ -95,7 +95,7 @@ TEST(SparseModel, FramesOrderTheImagesAndTracksFollow) {
     const SparseModel model = ReadFiles(files);
     EXPECT_THAT(ImageIds(model), ElementsAre(5, 7, 3));
     EXPECT_EQ(model.images[0].name, "e.jpg");
-    EXPECT_THAT(model.points[0].track, ElementsAre(1, 2, 1));
+    EXPECT_THAT(model.points[0].track, ElementsAre(1, 1, 2));
     EXPECT_THAT(model.points[1].track, ElementsAre(0));
   }
 }

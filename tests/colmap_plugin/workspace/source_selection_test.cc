@@ -3,6 +3,7 @@
 #include "tests/colmap_plugin/workspace/test_workspace.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <map>
 
@@ -21,13 +22,20 @@ Eigen::Vector3d PointUnderAngle(double degrees) {
   return {0.5, 0, 0.5 / std::tan(degrees / 2 * kDegree)};
 }
 
+std::vector<int> Select(const SourceSelector& selector,
+                        int ref,
+                        double min_angle,
+                        int max_num) {
+  return SelectWideEnough(selector.Candidates(ref, min_angle), max_num);
+}
+
 // The angle that decides about the pair, in degrees.
 void ExpectAngle(const SourceSelector& selector,
                  int ref,
                  int image,
                  double angle) {
-  EXPECT_THAT(selector.Select(ref, angle - 1e-4, 20), ElementsAre(image));
-  EXPECT_THAT(selector.Select(ref, angle + 1e-4, 20), IsEmpty()) << angle;
+  EXPECT_THAT(Select(selector, ref, angle - 1e-4, 20), ElementsAre(image));
+  EXPECT_THAT(Select(selector, ref, angle + 1e-4, 20), IsEmpty()) << angle;
 }
 
 TEST(SourceSelection, SortsBySharedPointsThenByImageIndex) {
@@ -41,10 +49,10 @@ TEST(SourceSelection, SortsBySharedPointsThenByImageIndex) {
   const Workspace workspace = files.Open();
   const TrackIndex tracks(workspace);
   const SourceSelector selector(workspace, tracks);
-  EXPECT_THAT(selector.Select(2, 1, -1), ElementsAre(1, 3, 0));
-  EXPECT_THAT(selector.Select(2, 1, 2), ElementsAre(1, 3));
-  EXPECT_THAT(selector.Select(2, 1, 0), IsEmpty());
-  EXPECT_THAT(selector.Select(4, 1, 20), ElementsAre(0));
+  EXPECT_THAT(Select(selector, 2, 1, -1), ElementsAre(1, 3, 0));
+  EXPECT_THAT(Select(selector, 2, 1, 2), ElementsAre(1, 3));
+  EXPECT_THAT(Select(selector, 2, 1, 0), IsEmpty());
+  EXPECT_THAT(Select(selector, 4, 1, 20), ElementsAre(0));
 }
 
 TEST(SourceSelection, AngleIsTheNearestRankOfThreeQuarters) {
@@ -85,8 +93,8 @@ TEST(SourceSelection, SmallAnglesAreDropped) {
   const Workspace workspace = files.Open();
   const TrackIndex tracks(workspace);
   const SourceSelector selector(workspace, tracks);
-  EXPECT_THAT(selector.Select(0, 1.4, 20), ElementsAre(1));
-  EXPECT_THAT(selector.Select(0, 1.6, 20), IsEmpty());
+  EXPECT_THAT(Select(selector, 0, 1.4, 20), ElementsAre(1));
+  EXPECT_THAT(Select(selector, 0, 1.6, 20), IsEmpty());
 }
 
 TEST(SourceSelection, RepeatedTrackElementsCountAsPairs) {
@@ -118,8 +126,8 @@ TEST(SourceSelection, SamePlaceAndPointAtTheCentreGiveAngleZero) {
   const Workspace workspace = files.Open();
   const TrackIndex tracks(workspace);
   const SourceSelector selector(workspace, tracks);
-  EXPECT_THAT(selector.Select(0, 1e-9, 20), IsEmpty());
-  EXPECT_THAT(selector.Select(0, 0, 20), ElementsAre(1, 2));
+  EXPECT_THAT(Select(selector, 0, 1e-9, 20), IsEmpty());
+  EXPECT_THAT(Select(selector, 0, 0, 20), ElementsAre(1, 2));
 }
 
 TEST(SourceSelection, UnusableImagesTakeNoPlace) {
@@ -132,8 +140,19 @@ TEST(SourceSelection, UnusableImagesTakeNoPlace) {
   const Workspace workspace = files.Open();
   const TrackIndex tracks(workspace);
   const SourceSelector selector(workspace, tracks);
-  EXPECT_THAT(selector.Select(0, 1, 1), ElementsAre(2));
-  EXPECT_THAT(selector.Select(1, 1, 1), IsEmpty());
+  EXPECT_THAT(Select(selector, 0, 1, 1), ElementsAre(2));
+  EXPECT_THAT(Select(selector, 1, 1, 1), IsEmpty());
+  const auto of_all = selector.CandidatesOf({0, 1, 2}, 1);
+  EXPECT_THAT(SelectWideEnough(of_all[0], -1), ElementsAre(2));
+  EXPECT_THAT(SelectWideEnough(of_all[1], -1), IsEmpty());
+}
+
+// `num` of the images, few in their places.
+std::vector<int> Shuffled(int num_images, int num) {
+  std::vector<int> images;
+  for (int i = 0; i < num; ++i)
+    images.push_back((7 * i + 3) % num_images);
+  return images;
 }
 
 // What COLMAP computes, written down plainly: all angles, sorted.
@@ -192,10 +211,24 @@ TEST(SourceSelection, IsThatOfAllAnglesSortedForAnyBoundAndAnyThread) {
   const SourceSelector selector(workspace, tracks);
   for (const double min_angle : {0.0, 0.5, 1.0, 2.0, 5.0, 30.0, 89.9, 91.0}) {
     tbb::parallel_for(0, kNumImages, [&](int ref) {
-      EXPECT_EQ(selector.Select(ref, min_angle, -1),
+      EXPECT_EQ(Select(selector, ref, min_angle, -1),
                 PlainlySelected(workspace, ref, min_angle))
           << ref << " " << min_angle;
     });
+    // A few images, which are counted one by one, and most, pair by pair.
+    for (const std::vector<int>& refs :
+         {std::vector<int>{7, 3}, Shuffled(kNumImages, 20)}) {
+      std::atomic<size_t> num_heard{0};
+      const auto candidates =
+          selector.CandidatesOf(refs, min_angle, {}, [&] { ++num_heard; });
+      EXPECT_EQ(num_heard, refs.size());
+      ASSERT_EQ(candidates.size(), refs.size());
+      for (size_t i = 0; i < refs.size(); ++i) {
+        EXPECT_EQ(SelectWideEnough(candidates[i], -1),
+                  PlainlySelected(workspace, refs[i], min_angle))
+            << refs[i] << " " << min_angle;
+      }
+    }
   }
 }
 
