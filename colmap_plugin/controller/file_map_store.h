@@ -1,5 +1,5 @@
-// The maps of a run in the workspace: finds those that are finished by their
-// stamps, publishes normal map, depth map, graph and stamp in this order.
+// The maps of a run in the workspace: asks StagePlan which are finished,
+// publishes normal map, depth map, graph and stamp in this order.
 #pragma once
 
 #include "colmap_plugin/controller/input_cache.h"

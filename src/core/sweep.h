@@ -1,5 +1,7 @@
-// A half-sweep, as data, and what it does at one pixel of its colour. CPU and
-// CUDA both go through VisitPixel(), so that a pass is the same on all of them.
+// A half-sweep, as data, and what it does at one pixel of its colour. A backend
+// goes through VisitPixel(), or, where it computes the costs of several pixels
+// at once, through the steps of update_pixel.h and initialize_pixel.h, so that
+// a pass is the same on all of them.
 #pragma once
 
 #include "src/core/consistency_filter.h"

@@ -150,8 +150,7 @@ TEST(SourceSelection, UnusableImagesTakeNoPlace) {
 // `num` of the images, few in their places.
 std::vector<int> Shuffled(int num_images, int num) {
   std::vector<int> images;
-  for (int i = 0; i < num; ++i)
-    images.push_back((7 * i + 3) % num_images);
+  for (int i = 0; i < num; ++i) images.push_back((7 * i + 3) % num_images);
   return images;
 }
 
