@@ -13,6 +13,34 @@ namespace {
 // more than pictures of one camera along a walk do stay as they are.
 constexpr double kMinRatio = 1.5;
 
+double FocalRatio(const Camera& ref, const Camera& src) {
+  return std::sqrt(static_cast<double>(src.fx) * src.fy /
+                   (static_cast<double>(ref.fx) * ref.fy));
+}
+
+// Whether SamplingRatio() can reach the bound. On a ray depth / z grows or
+// falls with depth, at one depth it does so along rows and columns, as long as
+// all lies before the source, so no place exceeds the corners of what is seen.
+// Thousands of images have few such sources, and this is 8 places, not 432.
+bool CanReach(double bound,
+              const Camera& ref,
+              const Camera& src,
+              float depth_min,
+              float depth_max) {
+  constexpr double kRounding = 1.001;
+  const double focal_ratio = FocalRatio(ref, src);
+  for (const int corner : {0, 1, 2, 3}) {
+    const Vec3f ray = RayAt(ref,
+                            static_cast<float>(ref.width * (corner % 2)),
+                            static_cast<float>(ref.height * (corner / 2)));
+    for (const float depth : {depth_min, depth_max}) {
+      const float z = CamFromWorld(src, WorldFromCam(ref, depth * ray)).z;
+      if (!(z > 0) || focal_ratio * depth / z * kRounding >= bound) return true;
+    }
+  }
+  return false;
+}
+
 // The source's pixels per pixel of the reference, in length, on surfaces that
 // face the cameras: the median over what both may see, 0 if that is nothing.
 double SamplingRatio(const Camera& ref,
@@ -23,8 +51,7 @@ double SamplingRatio(const Camera& ref,
   const auto middle = [](int step, int count) {
     return (static_cast<float>(step) + 0.5f) / static_cast<float>(count);
   };
-  const double focal_ratio = std::sqrt(static_cast<double>(src.fx) * src.fy /
-                                       (static_cast<double>(ref.fx) * ref.fy));
+  const double focal_ratio = FocalRatio(ref, src);
   // Asked of every source in every stage, so roots are taken once.
   float depths[kNumDepths];
   for (int k = 0; k < kNumDepths; ++k) {
@@ -66,6 +93,8 @@ int SourceLevel(const Workspace& workspace,
   const Camera ref =
       workspace.CameraAround(problem.ref_image, problem.ref_image);
   const Camera src = workspace.CameraAround(src_image, problem.ref_image);
+  if (!CanReach(kMinRatio, ref, src, problem.depth_min, problem.depth_max))
+    return 0;
   double ratio = SamplingRatio(ref, src, problem.depth_min, problem.depth_max);
   int level = 0;
   while (ratio >= kMinRatio &&

@@ -60,8 +60,8 @@ class TrackIndex {
     }
   }
 
-  // A point and its track lie in some four lines of memory, and a core waits for
-  // two dozen at a time: 4 to 8 points are best, 16 take a fifth longer.
+  // A point and its track lie in some four lines of memory, and a core waits
+  // for two dozen at a time: 4 to 8 points are best, 16 take a fifth longer.
   static constexpr size_t kBatch = 6;
   struct Batch {
     std::array<std::pair<size_t, size_t>, kBatch> points;  // with counts

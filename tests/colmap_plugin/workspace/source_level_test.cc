@@ -50,6 +50,11 @@ TEST_F(SourceLevelTest, OneFromHalfTheDistanceIsHalved) {
   EXPECT_EQ(LevelOf(kSame, {1, 0, 5}), 1);
 }
 
+// Finer by 1.7 at the nearest depth, 1.5 in the middle, 1.4 at the farthest.
+TEST_F(SourceLevelTest, OneThatIsFinerAtMostDepthsIsHalved) {
+  EXPECT_EQ(LevelOf(kSame, {1, 0, 3.4}), 1);
+}
+
 TEST_F(SourceLevelTest, CoarserOnesStayAsTheyAre) {
   EXPECT_EQ(LevelOf("PINHOLE 80 60 50 50 40 30", {1, 0, 0}), 0);
   EXPECT_EQ(LevelOf(kSame, {1, 0, -10}), 0);
