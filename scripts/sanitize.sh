@@ -16,6 +16,6 @@ cmake --build --preset "$preset" >"build/$preset/build.log" || { tail -n 20 "bui
 # An allocation that fails is for the program to handle.
 export ASAN_OPTIONS=allocator_may_return_null=1:detect_leaks=1
 export UBSAN_OPTIONS=print_stacktrace=1
-export TSAN_OPTIONS=halt_on_error=1:second_deadlock_stack=1
+export TSAN_OPTIONS=halt_on_error=1:second_deadlock_stack=1:suppressions=$PWD/tests/tsan/suppressions.txt
 exec ctest --test-dir "build/$preset" --output-on-failure -j2 \
   -LE 'arm|clang|faults|fuzz|install|package|patches|pycolmap|site' -E 'quality|scripts_test' "${@:2}"

@@ -12,7 +12,9 @@ namespace hpm {
 
 template <class T>
 bool SameBytes(const std::vector<T>& a, const std::vector<T>& b) {
-  return a.size() == b.size() &&
+  if (a.size() != b.size()) return false;
+  // The data of an empty vector may be null, which memcmp does not allow.
+  return a.empty() ||
          std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
 }
 
