@@ -31,6 +31,9 @@ class Threads(CliTest):
             env=WITHOUT_LEAKS,
         )
 
+    @unittest.skipIf(
+        os.environ.get("HPM_SANITIZE") == "thread", "tests/tsan/tbb cannot do with fewer threads than two"
+    )
     @unittest.skipUnless(os.geteuid() == 0, "becoming a user without processes needs root")
     def test_with_few_processes_fewer_threads_compute_or_the_limit_is_named(self):
         expected = self.workspace()
