@@ -51,7 +51,8 @@ class WrapperTest(CliTest):
 
     def environment(self, *folders, **more):
         path = ":".join(map(str, [*folders, HPM_FOLDER, "/usr/bin", "/bin"]))
-        return {"PATH": path, "PYTHONDONTWRITEBYTECODE": "1", **more}
+        sanitizers = {name: value for name, value in os.environ.items() if name.endswith("SAN_OPTIONS")}
+        return {"PATH": path, "PYTHONDONTWRITEBYTECODE": "1", **sanitizers, **more}
 
     def run_wrapper(self, *arguments, env=None, program=WRAPPER, **keywords):
         return subprocess.run(
