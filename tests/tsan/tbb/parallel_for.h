@@ -4,7 +4,8 @@
 // takes every hand-over for a race, also those of our own data; suppressing
 // reports with TBB in the stack would hide ours, since all our loops run below
 // TBB. Here threads that the sanitizer understands run the same loop bodies, so
-// that a report is a race of ours.
+// that a report is a race of ours. Neither Ninja nor ccache notices a header
+// that is added here and hides the system's: build anew, with an empty cache.
 #pragma once
 
 #include <algorithm>
