@@ -60,9 +60,9 @@ step_kernels() {
 
 step_runs() { timeout 130 python3 -u bench/gpu/runs.py --carry "$carry" --out "$out/runs.json" ${RUNS_ARGS:-}; }
 
-# The update and the start of a basic pass, once each, after the warm-up.
+# Two bands of the first update of a basic pass.
 step_profile() {
-  timeout 60 ncu --clock-control none --kernel-name 'regex:Sweep' --launch-skip 4 --launch-count 3 \
+  timeout 60 ncu --clock-control none --kernel-name 'regex:Sweep' --launch-skip 8 --launch-count 2 \
     --section SpeedOfLight --section ComputeWorkloadAnalysis --section MemoryWorkloadAnalysis --section WarpStateStats \
     --section Occupancy --section LaunchStats --section InstructionStats \
     "$bin/hpm_gpu_bench" --out "$out/profiled.json" --srcs 10 --width 1600 --height 1065 --samplers 0 \
