@@ -10,6 +10,7 @@
 #include "colmap_plugin/controller/run_setup.h"
 #include "colmap_plugin/controller/run_share.h"
 #include "colmap_plugin/controller/run_statistics.h"
+#include "colmap_plugin/controller/run_warnings.h"
 #include "colmap_plugin/controller/share_checks.h"
 #include "colmap_plugin/controller/thread_supply.h"
 #include "colmap_plugin/controller/unreadable_images.h"
@@ -100,29 +101,6 @@ void ForgetMaps(const Workspace& workspace,
   }
   // Those of images that become problems when the run is planned anew, too.
   RemoveInnerMaps(workspace);
-}
-
-// What came from such images is stamped as incomplete.
-void WarnOfChangedImages(const Workspace& workspace,
-                         const std::vector<StereoProblem>& problems,
-                         const ImageContents& contents,
-                         const LogSink& log) {
-  std::set<int> images;
-  for (const StereoProblem& problem : problems) {
-    if (!CanBeComputed(workspace, problem)) continue;
-    images.insert(problem.ref_image);
-    images.insert(problem.src_images.begin(), problem.src_images.end());
-  }
-  ImageFault changed;
-  for (const int image : images) {
-    if (!contents.IsUnchanged(image))
-      changed.Add(workspace.ImagePath(image).string());
-  }
-  if (changed.num() == 0) return;
-  log(LogLevel::kWarning,
-      changed.Line(static_cast<int>(problems.size()),
-                   "changed during this run") +
-          "; run again, which makes anew what was made from them");
 }
 
 int CountFinalMaps(const Workspace& workspace, const StagePlan& plan) {
@@ -281,8 +259,7 @@ bool PatchMatchController::ComputeStages(const RunState& run) const {
     run.lock.ThrowIfLost();
     for (const auto& [image, reason] : error.reasons()) {
       log_(LogLevel::kWarning, reason);
-      if (!run.share.IsWhole())
-        RecordUnreadable(run.workspace, run.contents, image, reason);
+      RecordUnreadable(run.workspace, run.contents, image, reason);
       run.workspace.DropPicture(image);
     }
     // The references are the same: those that cannot be computed stay as
@@ -305,6 +282,8 @@ RunSummary PatchMatchController::Summarize(const RunState& run,
        FilterWarnings(run.statistics.losses(), options_)) {
     log_(LogLevel::kWarning, line);
   }
+  WarnOfOldMaps(run.workspace, run.problems, run.plan, log_);
+  WarnOfEmptyMaps(run.statistics.valid_shares(), log_);
   std::vector<std::string> names;
   for (size_t p = 0; p < run.problems.size(); ++p) {
     const StereoProblem& problem = run.problems[p];

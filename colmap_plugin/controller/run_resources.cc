@@ -60,7 +60,7 @@ RunResources OpenResources(const Workspace& workspace,
                       ? fmt::format(", {} images in flight", num_in_flight)
                       : "",
                   options.hpm.method,
-                  (needs.working + needs.inputs) >> 20));
+                  (kUsualOverheadBytes + needs.working + needs.inputs) >> 20));
   resources.workers = std::make_unique<WorkerPool>(
       std::move(cpus), std::move(gpus), may_fall_back, log);
   return resources;

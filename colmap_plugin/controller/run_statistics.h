@@ -57,6 +57,10 @@ class RunStatistics {
 
   // By image, of the final maps that were computed.
   const std::map<std::string, FilterLosses>& losses() const { return losses_; }
+  // Likewise; of pixels, those with a depth.
+  const std::map<std::string, double>& valid_shares() const {
+    return valid_shares_;
+  }
 
   nlohmann::json Record(const ControllerOptions& options,
                         const RunSummary& summary) const;

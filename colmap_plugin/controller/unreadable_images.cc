@@ -1,11 +1,15 @@
 #include "colmap_plugin/controller/unreadable_images.h"
 
 #include "colmap_plugin/formats/atomic_file.h"
+#include "src/base/error.h"
+#include "src/image/decode_picture.h"
 
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <system_error>
+
+#include <tbb/parallel_for.h>
 
 namespace hpm {
 namespace fs = std::filesystem;
@@ -13,6 +17,14 @@ namespace {
 
 fs::path FolderOf(const Workspace& workspace) {
   return workspace.StatePath() / "unreadable_images";
+}
+
+std::vector<int> ImagesWithPicture(const Workspace& workspace) {
+  std::vector<int> images;
+  for (int i = 0; i < workspace.num_images(); ++i) {
+    if (workspace.usable(i) && workspace.has_picture(i)) images.push_back(i);
+  }
+  return images;
 }
 
 }  // namespace
@@ -32,10 +44,7 @@ std::vector<std::string> DropUnreadable(Workspace* workspace,
   std::vector<std::string> lines;
   std::error_code error;
   if (!fs::exists(FolderOf(*workspace), error)) return lines;
-  std::vector<int> images;
-  for (int i = 0; i < workspace->num_images(); ++i) {
-    if (workspace->usable(i) && workspace->has_picture(i)) images.push_back(i);
-  }
+  const std::vector<int> images = ImagesWithPicture(*workspace);
   contents->Read(images, cancel);
   for (const int image : images) {
     const std::string& hash = contents->HashOf(image);
@@ -45,6 +54,28 @@ std::vector<std::string> DropUnreadable(Workspace* workspace,
     lines.emplace_back(std::istreambuf_iterator<char>(file),
                        std::istreambuf_iterator<char>());
     workspace->DropPicture(image);
+  }
+  return lines;
+}
+
+std::vector<std::string> DropTruncated(Workspace* workspace,
+                                       const CancelToken& cancel) {
+  const std::vector<int> images = ImagesWithPicture(*workspace);
+  std::vector<std::string> faults(images.size());
+  tbb::parallel_for(size_t{0}, images.size(), [&](size_t i) {
+    cancel.ThrowIfCancelled();
+    try {
+      ReadPictureFile(workspace->ImagePath(images[i]));
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::kBadInput) throw;
+      faults[i] = error.what();
+    }
+  });
+  std::vector<std::string> lines;
+  for (size_t i = 0; i < images.size(); ++i) {
+    if (faults[i].empty()) continue;
+    lines.push_back(faults[i]);
+    workspace->DropPicture(images[i]);
   }
   return lines;
 }

@@ -1,6 +1,7 @@
 // Images that decoding found damaged, by their contents:
 // stereo/hpm_mvs/unreadable_images/<hash>. Whoever plans afterwards knows it
-// from the start, so that all shards of a run plan the same.
+// from the start, so that all shards of a run, the next run, and what is said
+// about them plan the same.
 #pragma once
 
 #include "colmap_plugin/controller/image_contents.h"
@@ -24,5 +25,10 @@ void RecordUnreadable(const Workspace& workspace,
 std::vector<std::string> DropUnreadable(Workspace* workspace,
                                         ImageContents* contents,
                                         const CancelToken& cancel);
+
+// The same for images whose file ends too early (see
+// src/image/image_integrity.h), which nobody has decoded yet. Reads all images.
+std::vector<std::string> DropTruncated(Workspace* workspace,
+                                       const CancelToken& cancel);
 
 }  // namespace hpm

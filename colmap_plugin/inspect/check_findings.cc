@@ -57,6 +57,12 @@ std::string CheckText(const MapCheck& check) {
                         finding.removed ? " (removed)" : "",
                         finding.reason);
   }
+  const bool any_removable = std::any_of(
+      check.findings.begin(), check.findings.end(), [](const Finding& f) {
+        return f.kind == FindingKind::kDamaged && !f.removed;
+      });
+  if (any_removable)
+    text += "--fix 1 removes what is damaged, and the next run makes it anew\n";
   if (check.Count(FindingKind::kStale) > 0) {
     text +=
         "give check the options of the run: with others all its maps are "

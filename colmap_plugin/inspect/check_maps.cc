@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <limits>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -27,8 +26,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr char kOfNoImage[] = "belongs to no image of the model";
-
-constexpr DepthRange kAnyDepth = {0, std::numeric_limits<float>::infinity()};
 
 class Checker {
  public:
@@ -257,8 +254,14 @@ class Checker {
     if (has_fault) return;  // was told
     if (!CanBeComputed(workspace_, problem)) {
       if (is_public && problem.is_reference) {
-        add(FindingKind::kMissing,
-            "the image cannot be computed: no picture of it or of any source");
+        const std::string why =
+            "the image cannot be computed: no picture of it or of any source";
+        if (any) {
+          add(FindingKind::kStale,
+              "of an earlier run, and fusion would use it: " + why);
+        } else {
+          add(FindingKind::kMissing, why);
+        }
       }
       return;
     }

@@ -4,7 +4,9 @@
 #include "colmap_plugin/formats/exchange_files.h"
 #include "colmap_plugin/formats/image_name.h"
 #include "colmap_plugin/formats/map_file.h"
+#include "colmap_plugin/inspect/map_faults.h"
 #include "src/base/error.h"
+#include "src/base/input_file.h"
 #include "src/base/retries.h"
 
 #include <algorithm>
@@ -171,11 +173,34 @@ nlohmann::json Description(const Workspace& workspace,
   return json;
 }
 
+// What an earlier export of the same maps in another format wrote there, whose
+// files may still lie beside: how its steps are to be read, say.
+void KeepWhatOthersNeed(const fs::path& path, nlohmann::json* description) {
+  constexpr uint64_t kMostBytes = 1 << 20;
+  if (!Exists(path)) return;
+  nlohmann::json old = nlohmann::json::parse(
+      ReadWholeFile(path, kMostBytes), nullptr, /*allow_exceptions=*/false);
+  if (!old.is_object()) return;
+  for (const char* key : {"input_type", "width", "height"}) {
+    if (!old.contains(key) || old[key] != (*description)[key]) return;
+  }
+  old.update(*description);
+  *description = std::move(old);
+}
+
 [[noreturn]] void ThrowUnfit(const fs::path& path) {
   throw Error(ErrorCode::kBadInput,
               path.string() +
                   ": the maps of this image do not fit together; hpm_mvs check "
                   "--fix 1 and another run make them anew");
+}
+
+// Numbers that no map may hold would go on into other programs.
+void ThrowIfFaulty(const fs::path& path, const std::string& fault) {
+  if (fault.empty()) return;
+  throw Error(ErrorCode::kBadInput,
+              path.string() + ": " + fault +
+                  "; hpm_mvs check --fix 1 and another run make it anew");
 }
 
 void CheckPair(const Map& depth, const Map& normal, const fs::path& path) {
@@ -192,9 +217,12 @@ void ExportImage(const Workspace& workspace,
                  const fs::path& folder) {
   const fs::path depth_path =
       workspace.MapPath(image, MapKind::kDepth, options.input_type);
+  const fs::path normal_path =
+      workspace.MapPath(image, MapKind::kNormal, options.input_type);
+  ThrowIfFaulty(depth_path, FaultOfDepths(depth_path, kAnyDepth));
+  ThrowIfFaulty(normal_path, FaultOfNormals(normal_path));
   const Map depth = ReadMap(depth_path);
-  const Map normal =
-      ReadMap(workspace.MapPath(image, MapKind::kNormal, options.input_type));
+  const Map normal = ReadMap(normal_path);
   CheckPair(depth, normal, depth_path);
   const std::string& name = workspace.ImageName(image);
   if (options.format == "ply") {
@@ -208,6 +236,17 @@ void ExportImage(const Workspace& workspace,
         *std::max_element(depth.data.begin(), depth.data.end());
     step = options.depth_step > 0 ? options.depth_step : largest / kMostSteps;
     if (!(step > 0)) step = 1;  // no depth at all
+    if (largest > step * (kMostSteps + 0.5)) {
+      throw Error(
+          ErrorCode::kBadInput,
+          fmt::format("--depth_step {}: {} has depths up to {:.6g}, beyond the "
+                      "{} steps of 16 bits; give at least {:.6g}, or 0",
+                      options.depth_step,
+                      QuotedName(name),
+                      largest,
+                      kMostSteps,
+                      largest / kMostSteps));
+    }
     WriteFileAtomically(folder / (name + ".depth.png"),
                         DepthAsPng(depth, step));
     WriteFileAtomically(folder / (name + ".normal.png"), NormalAsPng(normal));
@@ -224,6 +263,7 @@ void ExportImage(const Workspace& workspace,
       Description(workspace, image, depth, options, step);
   if (Exists(confidence_path)) {
     const Map confidence = ReadMap(confidence_path);
+    ThrowIfFaulty(confidence_path, FaultOfConfidence(confidence_path));
     if (confidence.channels != 1 || confidence.width != depth.width ||
         confidence.height != depth.height)
       ThrowUnfit(confidence_path);
@@ -237,8 +277,10 @@ void ExportImage(const Workspace& workspace,
         options.format == "png16" ? ConfidenceAsPng(confidence)
                                   : Encode(confidence, options.format));
   }
+  const fs::path description_path = folder / (name + ".json");
+  KeepWhatOthersNeed(description_path, &description);
   WriteFileAtomically(
-      folder / (name + ".json"),
+      description_path,
       description.dump(
           2, ' ', false, nlohmann::json::error_handler_t::replace) +
           "\n");
@@ -285,9 +327,14 @@ ExportResult ExportMaps(const WorkspaceOptions& workspace_options,
                     options.input_type));
   }
   ExportResult result;
-  result.folder = options.output_path.empty()
-                      ? workspace.StereoPath() / "export"
-                      : options.output_path;
+  result.folder = options.output_path;
+  if (result.folder.empty()) {
+    // Files of both kinds have the same names.
+    result.folder =
+        workspace.StereoPath() / (options.input_type == "geometric"
+                                      ? "export"
+                                      : "export_" + options.input_type);
+  }
   for (const int image : images) {
     cancel.ThrowIfCancelled();
     try {

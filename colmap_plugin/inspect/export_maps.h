@@ -15,7 +15,8 @@ struct ExportOptions {
   std::string format = "exr";            // exr, pfm, png16, npy or ply
   std::string input_type = "geometric";  // or photometric
   std::string image_name;                // empty: all images with maps
-  std::filesystem::path output_path;     // empty: stereo/export
+  // Empty: stereo/export, of photometric maps stereo/export_photometric.
+  std::filesystem::path output_path;
   // png16: model units per step; 0: each image's largest depth becomes 65535.
   double depth_step = 0;
 };
@@ -29,7 +30,8 @@ struct ExportResult {
 // Writes <output_path>/<image name>.depth.<ext>, .normal.<ext> and, where there
 // is one, .confidence.<ext>, or
 // <image name>.ply, and for all but ply <image name>.json, which says what the
-// numbers mean and which camera they belong to. Throws Error(kBadInput) if no
+// numbers mean and which camera they belong to, also of what an earlier export
+// left there. Damaged maps are not exported. Throws Error(kBadInput) if no
 // image has maps or the one that is asked for has none.
 ExportResult ExportMaps(const WorkspaceOptions& workspace_options,
                         const ExportOptions& options,

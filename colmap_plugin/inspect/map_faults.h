@@ -5,12 +5,15 @@
 #include "colmap_plugin/workspace/depth_range.h"
 
 #include <filesystem>
+#include <limits>
 #include <string>
 
 namespace hpm {
 
 // In one line, without the file's name; empty if nothing is. Memory for some
 // rows only. A file that cannot be read has no fault: UnreadableFile is thrown.
+
+constexpr DepthRange kAnyDepth = {0, std::numeric_limits<float>::infinity()};
 
 // Header, length, one channel, all values finite, not negative, and zero or in
 // `range`.

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
@@ -22,9 +23,11 @@
 #include <fmt/format.h>
 
 namespace hpm {
+namespace fs = std::filesystem;
 namespace {
 
-std::string Gigabytes(uint64_t bytes) {
+std::string Size(uint64_t bytes) {
+  if (bytes < 1 << 30) return fmt::format("{} MB", bytes >> 20);
   return fmt::format("{:.1f} GiB", static_cast<double>(bytes) / (1 << 30));
 }
 
@@ -32,6 +35,10 @@ std::string Duration(double seconds) {
   if (seconds < 90) return fmt::format("{:.0f} s", seconds);
   if (seconds < 90 * 60) return fmt::format("{:.0f} min", seconds / 60);
   return fmt::format("{:.1f} h", seconds / 3600);
+}
+
+bool Contains(const std::vector<std::string>& lines, const std::string& line) {
+  return std::find(lines.begin(), lines.end(), line) != lines.end();
 }
 
 class Planner {
@@ -51,18 +58,7 @@ class Planner {
     std::optional<CpuTarget> target;
     Attempt([&] { target = FindCpuTarget(options_.hpm.cpu_target); });
     const auto start = std::chrono::steady_clock::now();
-    const bool is_read = Attempt(
-        [&] { run_ = std::make_unique<PlannedRun>(options_, log_, cancel_); });
-    if (!is_read) return std::move(plan_);
-    Attempt([&] {
-      const ShardNumber shard = RunShare(options_.hpm).shard();
-      ThrowIfLocked(run_->workspace().StatePath(), {shard.index, shard.count});
-    });
-    const bool is_planned = Attempt([&] {
-      run_->Plan(/*look_at_maps=*/true, log_);
-      CheckShare(RunShare(options_.hpm), run_->plan());
-    });
-    if (!is_planned) return std::move(plan_);
+    if (!ReadAndPlan()) return std::move(plan_);
     planning_seconds_ =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start)
             .count();
@@ -72,7 +68,10 @@ class Planner {
     SayDisk();
     Attempt([&] { CheckFirstInputs(); });
     if (threads && target) SayMemory(*target, threads->num_threads());
-    if (plan_.problems.empty()) SayTime();
+    // Of what can be computed.
+    if (plan_.exit_code == 0 ||
+        plan_.exit_code == static_cast<int>(ErrorCode::kPartial))
+      SayTime();
     return std::move(plan_);
   }
 
@@ -83,7 +82,8 @@ class Planner {
       return true;
     } catch (const Error& error) {
       if (error.code() == ErrorCode::kInterrupted) throw;
-      plan_.problems.push_back(error.what());
+      if (!Contains(plan_.problems, error.what()))
+        plan_.problems.push_back(error.what());
       if (plan_.exit_code == 0)
         plan_.exit_code = static_cast<int>(error.code());
       return false;
@@ -93,6 +93,33 @@ class Planner {
   template <class... T>
   void Say(fmt::format_string<T...> format, T&&... values) {
     plan_.lines.push_back(fmt::format(format, std::forward<T>(values)...));
+  }
+
+  // Where a file that an option names may be at fault, goes on without it, to
+  // find what else is wrong.
+  bool ReadAndPlan() {
+    ControllerOptions options = options_;
+    if (Attempt([&] { ReadAndPlanWith(options, log_); })) return true;
+    const LogSink silent = [](LogLevel, const std::string&) {};
+    for (fs::path* file :
+         {&options.workspace.mask_path, &options.problems.depth_ranges}) {
+      if (file->empty()) continue;
+      file->clear();
+      if (Attempt([&] { ReadAndPlanWith(options, silent); })) return true;
+    }
+    return false;
+  }
+
+  void ReadAndPlanWith(const ControllerOptions& options, const LogSink& log) {
+    run_ = std::make_unique<PlannedRun>(options, log, cancel_);
+    const RunShare share(options.hpm);
+    Attempt([&] {
+      ThrowIfLocked(run_->workspace().StatePath(),
+                    {share.shard().index, share.shard().count});
+    });
+    run_->DropTruncatedImages(log);
+    run_->Plan(/*look_at_maps=*/true, log);
+    CheckShare(share, run_->plan());
   }
 
   // Of the stage that this process would begin with.
@@ -186,8 +213,8 @@ class Planner {
     const std::optional<uint64_t> num_free =
         FreeBytes(run_->workspace().StatePath());
     Say("Disk: {} to write{}",
-        Gigabytes(bytes),
-        num_free ? ", " + Gigabytes(*num_free) + " free" : "");
+        Size(bytes),
+        num_free ? ", " + Size(*num_free) + " free" : "");
   }
 
   // What the run says of it itself.
@@ -207,7 +234,7 @@ class Planner {
                     num_threads,
                     say);
     });
-    Say("Memory that may be used: {}", Gigabytes(MemoryLimit()));
+    Say("Memory that may be used: {}", Size(MemoryLimit()));
   }
 
   void SayTime() {

@@ -17,6 +17,11 @@ PlannedRun::PlannedRun(const ControllerOptions& options,
   SetLevels(workspace_, &options_);
 }
 
+void PlannedRun::DropTruncatedImages(const LogSink& log) {
+  for (const std::string& line : DropTruncated(&workspace_, cancel_))
+    log(LogLevel::kWarning, line);
+}
+
 void PlannedRun::Plan(bool look_at_maps,
                       const LogSink& log,
                       PlanAccess access) {

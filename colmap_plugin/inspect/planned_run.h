@@ -19,6 +19,10 @@ class PlannedRun {
              const LogSink& log,
              const CancelToken& cancel);
 
+  // Leaves out images whose files end too early, as the run does once it has
+  // decoded them. Before Plan().
+  void DropTruncatedImages(const LogSink& log);
+
   // Finds the problems and stages. look_at_maps: else all maps count as absent.
   // access: kInspect or kVerify, so that no file is changed.
   void Plan(bool look_at_maps,

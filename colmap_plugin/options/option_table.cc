@@ -295,7 +295,10 @@ std::string TypeText(const OptionSpec& option) {
 std::string AllowedText(const OptionSpec& option) {
   const std::string type = TypeText(option);
   if (type == "bool") return "0/1, true/false, yes/no or on/off";
-  return option.allowed.text.empty() ? type : type + ", " + option.allowed.text;
+  if (option.allowed.text.empty()) return type;
+  // Names say themselves that they are text.
+  return type == "string" ? option.allowed.text
+                          : type + ", " + option.allowed.text;
 }
 
 std::string ConcernsText(const OptionSpec& option) {

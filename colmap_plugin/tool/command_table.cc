@@ -84,7 +84,7 @@ std::vector<Command> MakeTable() {
                   "Only this image, named as in the sparse model; not given: all that have maps"),
         ExportRow("input_type", &E::input_type, OneOf({"geometric", "photometric"}),
                   "Which maps, as in stereo_fusion"),
-        ExportRow("output_path", &E::output_path, Anything(), "Folder for the files; not given: stereo/export"),
+        ExportRow("output_path", &E::output_path, Anything(), "Folder for the files; not given: stereo/export, of photometric maps stereo/export_photometric"),
         ExportRow("depth_step", &E::depth_step, AtLeast(0),
                   "png16: model units per step; 0: each image's largest depth becomes 65535")}},
       {"status", "Tell how far a workspace is: what each stage has finished and still needs",

@@ -22,8 +22,12 @@ std::string HelpAs(const std::string& form) {
 }
 
 int FailUnknown(const std::string& word, const ToolEnvironment& tool) {
-  *tool.err << "ERROR: unknown command '" << OneLine(Shortened(word))
-            << "'; commands: " << CommandNames(", ") << "\n"
+  std::vector<std::string> names;
+  for (const Command& command : CommandTable()) names.push_back(command.name);
+  const std::string likely = LikelyName(word, names);
+  *tool.err << "ERROR: unknown command '" << OneLine(Shortened(word)) << "'"
+            << (likely.empty() ? "" : "; did you mean " + likely + "?")
+            << "; commands: " << CommandNames(", ") << "\n"
             << std::flush;
   return static_cast<int>(ErrorCode::kUsage);
 }

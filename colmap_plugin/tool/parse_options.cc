@@ -32,7 +32,8 @@ po::options_description Describe() {
   return description;
 }
 
-// "; did you mean --PatchMatchStereo.max_image_size?" for "--max_image_size".
+// "; did you mean --PatchMatchStereo.max_image_size?" for "--max_image_size",
+// or a name that is nearly the same.
 std::string Suggestion(const std::string& unknown) {
   std::string word = unknown.substr(0, unknown.find('='));
   word.erase(0, word.find_first_not_of('-'));
@@ -47,6 +48,14 @@ std::string Suggestion(const std::string& unknown) {
             option.name.size() - suffix.size(), suffix.size(), suffix) == 0;
     if (option.name == word || ends)
       names += (names.empty() ? "--" : " or --") + option.name;
+  }
+  if (names.empty()) {
+    std::string written = unknown.substr(0, unknown.find('='));
+    written.erase(0, written.find_first_not_of('-'));
+    std::vector<std::string> all;
+    for (const OptionSpec& option : OptionTable()) all.push_back(option.name);
+    const std::string likely = LikelyName(written, all);
+    if (!likely.empty()) names = "--" + likely;
   }
   return names.empty() ? "" : "; did you mean " + names + "?";
 }
@@ -67,7 +76,14 @@ class Interpreter {
                             source,
                             Shortened(name),
                             Suggestion(name)));
-      } else if (!option.string_key.empty() && option.value.size() == 1) {
+      } else if (option.string_key.empty()) {
+        for (const std::string& word : option.value) {
+          // COLMAP does not even say so.
+          result_->notes.push_back(fmt::format(
+              "'{}' is ignored: it is neither an option nor the value of one",
+              OneLine(Shortened(word))));
+        }
+      } else if (option.value.size() == 1) {
         TakeValue(option.string_key, option.value[0]);
       }
     }

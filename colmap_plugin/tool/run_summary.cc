@@ -58,8 +58,10 @@ std::vector<std::string> SummaryLines(const ControllerOptions& options,
       summary.num_kept,
       summary.failed.size()));
   if (summary.valid_pixel_share) {
-    lines.push_back(fmt::format("Pixels with a depth: {:.1f} %",
-                                100 * *summary.valid_pixel_share));
+    lines.push_back(
+        fmt::format("Pixels with a depth{}: {:.1f} %",
+                    summary.num_kept > 0 ? ", of the images computed now" : "",
+                    100 * *summary.valid_pixel_share));
     const std::string losses = LossesLine(summary.filter_losses);
     if (!losses.empty()) lines.push_back(losses);
   }

@@ -3,10 +3,30 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 
 #include <fmt/format.h>
 
 namespace hpm {
+namespace {
+
+// Levenshtein's distance, with '_' and '-' as one letter.
+size_t Distance(std::string_view a, std::string_view b) {
+  const auto letter = [](char c) { return c == '-' ? '_' : c; };
+  std::vector<size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), size_t{0});
+  for (size_t i = 0; i < a.size(); ++i) {
+    size_t diagonal = row[0]++;
+    for (size_t j = 0; j < b.size(); ++j) {
+      const size_t replaced = diagonal + (letter(a[i]) != letter(b[j]));
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({row[j + 1] + 1, row[j] + 1, replaced});
+    }
+  }
+  return row.back();
+}
+
+}  // namespace
 
 std::string OneLine(std::string_view text) {
   std::string line(text);
@@ -65,6 +85,23 @@ std::string Wrap(std::string_view text, size_t columns, size_t indent) {
     line += word;
   }
   return wrapped + std::string(indent, ' ') + line + '\n';
+}
+
+std::string LikelyName(std::string_view word,
+                       const std::vector<std::string>& names) {
+  constexpr size_t kMostWrong = 2;
+  size_t best = std::min(kMostWrong, word.size() / 3) + 1;
+  std::string likely;
+  for (const std::string& name : names) {
+    // Cheap, and long words are not compared at all.
+    const size_t longer = std::max(word.size(), name.size());
+    if (longer - std::min(word.size(), name.size()) >= best) continue;
+    const size_t distance = Distance(word, name);
+    if (distance >= best) continue;
+    best = distance;
+    likely = name;
+  }
+  return likely;
 }
 
 }  // namespace hpm

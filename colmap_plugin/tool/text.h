@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace hpm {
 
@@ -23,5 +24,11 @@ std::string ShellWord(const std::string& text);
 // `text` in lines of at most `columns` bytes where it has blanks, each begun
 // with `indent` blanks and ended with a newline.
 std::string Wrap(std::string_view text, size_t columns, size_t indent);
+
+// Of the names the one that a slip of the hand makes `word`: at most two
+// letters wrong, missing, too many; '_' and '-' are one. Empty if there is
+// none.
+std::string LikelyName(std::string_view word,
+                       const std::vector<std::string>& names);
 
 }  // namespace hpm

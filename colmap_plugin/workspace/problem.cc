@@ -48,9 +48,9 @@ class ProblemReader {
     std::vector<Choice> choices;
     const PatchMatchCfg cfg = ReadCfg();
     CheckCfg(workspace_, path_, cfg, log_);
+    CheckNames(cfg);
     for (const PatchMatchCfgEntry& entry : cfg.entries) {
-      const int ref = IndexOf(entry.ref_name, entry.line);
-      CheckSourceNames(entry);
+      const int ref = workspace_.ImageIndex(entry.ref_name);
       if (seen[ref]) {
         Warn("Ignoring line {} of {}: {} was listed before.",
              entry.line,
@@ -246,23 +246,40 @@ class ProblemReader {
     return std::max(0, options_.max_num_src_images);
   }
 
-  int IndexOf(const std::string& name, int line) const {
-    const int index = workspace_.ImageIndex(name);
-    if (index < 0) {
-      throw Error(ErrorCode::kBadInput,
-                  fmt::format("{}:{}: image {} does not exist in the sparse "
-                              "model; {}",
-                              path_.string(),
-                              line,
-                              QuotedName(name),
-                              RemedyForName(workspace_, name)));
+  // All wrong names at once: who corrects them by hand wants one run for it.
+  void CheckNames(const PatchMatchCfg& cfg) const {
+    constexpr size_t kMaxLines = 20;
+    std::string message;
+    std::vector<int> more;
+    const auto check = [&](const std::string& name, int line) {
+      if (workspace_.ImageIndex(name) >= 0) return;
+      if (!message.empty()) {
+        more.push_back(line);
+        return;
+      }
+      message = fmt::format(
+          "{}:{}: image {} does not exist in the sparse "
+          "model; {}",
+          path_.string(),
+          line,
+          QuotedName(name),
+          RemedyForName(workspace_, name));
+    };
+    for (const PatchMatchCfgEntry& entry : cfg.entries) {
+      check(entry.ref_name, entry.line);
+      for (const std::string& name : entry.src_names)
+        check(name, entry.src_line);
     }
-    return index;
-  }
-
-  void CheckSourceNames(const PatchMatchCfgEntry& entry) const {
-    for (const std::string& name : entry.src_names)
-      IndexOf(name, entry.src_line);
+    if (message.empty()) return;
+    more.erase(std::unique(more.begin(), more.end()), more.end());
+    if (!more.empty()) {
+      const size_t num_named = std::min(kMaxLines, more.size());
+      message +=
+          fmt::format("; likewise in lines {}{}",
+                      fmt::join(more.begin(), more.begin() + num_named, ", "),
+                      num_named < more.size() ? ", ..." : "");
+    }
+    throw Error(ErrorCode::kBadInput, message);
   }
 
   // N of "__auto__, N", else no bound.
@@ -292,7 +309,7 @@ class ProblemReader {
     std::vector<bool> taken(workspace_.num_images(), false);
     taken[ref] = true;
     for (const std::string& name : entry.src_names) {
-      const int source = IndexOf(name, entry.src_line);
+      const int source = workspace_.ImageIndex(name);
       if (taken[source]) continue;
       taken[source] = true;
       if (workspace_.usable(source)) {

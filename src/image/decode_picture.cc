@@ -19,16 +19,21 @@ constexpr uint64_t kMaxPictureBytes = INT32_MAX;
 
 }  // namespace
 
-// Read here and as a whole: decoders take an error of the disk for the end of
-// the file, and fill what is missing.
-cv::Mat DecodePicture(const std::filesystem::path& path, int flags) {
-  const std::string file = ReadWholeFile(path, kMaxPictureBytes);
+// As a whole: decoders take an error of the disk for the end of the file, and
+// fill what is missing.
+std::string ReadPictureFile(const std::filesystem::path& path) {
+  std::string file = ReadWholeFile(path, kMaxPictureBytes);
   if (!IsWholePicture(file)) {
     throw Error(ErrorCode::kBadInput,
                 path.string() +
                     ": the end of the file is missing; undistort the images "
                     "again or copy the file again");
   }
+  return file;
+}
+
+cv::Mat DecodePicture(const std::filesystem::path& path, int flags) {
+  const std::string file = ReadPictureFile(path);
   // OpenCV refuses more than 2^30 pixels by itself, from the header. It does
   // not write to the file's bytes.
   const cv::Mat bytes(

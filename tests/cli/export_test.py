@@ -135,6 +135,37 @@ class Export(CliTest):
                     n = self.normal[axis * SIZE + i]
                     self.assertLess(abs((value - 32768) / 32767 - n), 2 / 32767)
 
+    def test_another_format_leaves_what_the_first_one_needs(self):
+        out = self.dense.parent / "both"
+        self.assert_exit(self.export("--format=png16", f"--output_path={out}"), 0)
+        self.assert_exit(self.export("--format=npy", f"--output_path={out}"), 0)
+        about = json.loads((out / f"{NAME}.json").read_text())
+        self.assertAlmostEqual(about["depth_per_step"], max(self.depth) / 65535)
+
+    def test_steps_too_small_for_16_bits_are_refused(self):
+        out = self.dense.parent / "small_steps"
+        result = self.export("--format=png16", "--depth_step=0.00001", f"--output_path={out}")
+        self.assert_exit(result, 4, "--depth_step 1e-05", "give at least")
+        self.assertFalse(out.exists() and any(out.iterdir()))
+
+    def test_photometric_maps_have_a_folder_of_their_own(self):
+        self.assert_exit(self.export("--format=npy", "--input_type=photometric"), 0)
+        self.assertTrue((self.dense / f"stereo/export_photometric/{NAME}.depth.npy").exists())
+        self.assertFalse((self.dense / "stereo/export").exists())
+
+    def test_numbers_that_no_map_may_hold_are_not_exported(self):
+        path = self.dense / "stereo/depth_maps/view03.png.geometric.bin"
+        good = path.read_bytes()
+        try:
+            for value in (float("nan"), -3.4e35):
+                path.write_bytes(good[:-4] + struct.pack("<f", value))
+                out = self.dense.parent / "damaged"
+                result = self.export("--format=npy", f"--output_path={out}")
+                self.assert_exit(result, 4, "view03.png.geometric.bin: ", "check --fix 1")
+                self.assertFalse((out / "view03.png.depth.npy").exists())
+        finally:
+            path.write_bytes(good)
+
     def test_ply_points_project_to_their_pixels_with_their_depth(self):
         out = self.dense.parent / "out_ply"
         result = self.export("--format=ply", f"--output_path={out}", f"--image_name={NAME}")

@@ -52,7 +52,9 @@ class Masks(CliTest):
     def test_masked_pixels_confirm_nothing_as_sources(self):
         nothing = constant(WIDTH, HEIGHT, 0)
         self.write_masks({"view00.png": WHITE, **dict.fromkeys(NAMES[1:], nothing)})
-        self.assert_exit(self.run_tool(self.dense, *self.options), 0)
+        result = self.run_tool(self.dense, *self.options)
+        self.assert_exit(result, 0)
+        self.assertRegex(result.stderr, "4 of 4 images have a depth at less than 1 % of their pixels, the first: view00.png")
         for name in NAMES:
             self.assertEqual(self.share_of_depths(name), (0, 0), name)
 

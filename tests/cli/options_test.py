@@ -84,6 +84,19 @@ class WrongOptions(CliTest):
             with self.subTest(options):
                 self.assert_usage_error(workspace, *options)
 
+    def test_slips_of_the_hand_are_understood(self):
+        for arguments, right in (
+            (["patch_match_stereo", "--Hpm.qualty=low"], "--Hpm.quality"),
+            (["patch_match_stereo", "--workspace-path=x"], "--workspace_path"),
+            (["chek"], "check"),
+        ):
+            self.assert_exit(run(*arguments), 2, f"did you mean {right}?")
+
+    def test_a_word_that_is_no_option_is_ignored_as_by_colmap_and_named(self):
+        result = run("patch_match_stereo", "stray", "--workspace_path", "/nowhere")
+        self.assert_exit(result, 3)
+        self.assertIn("'stray' is ignored", result.stdout + result.stderr)
+
     def test_long_values_are_refused_and_echoed_in_short(self):
         long = 100_000 * "a"
         for option in (

@@ -99,6 +99,31 @@ class Plan(CliTest):
         self.assert_exit(result, 4, "1 of 4 images would fail, the first: view02.png")
         self.assertEqual(self.run_tool(dense, *FAST).returncode, 4)
 
+    def test_a_file_that_ends_too_early_is_found_before_the_run(self):
+        dense = self.workspace()
+        path = dense / "images/view02.png"
+        path.write_bytes(path.read_bytes()[:-40])
+        result = self.plan(dense, *FAST, "--sample_seconds=1")
+        self.assert_exit(result, 4, "1 of 4 images would fail, the first: view02.png")
+        self.assertIn("view02.png: the end of the file is missing", result.stderr)
+        self.assertIn("Images: 3 to compute", result.stdout)
+        self.assertIn("Time: ", result.stdout)
+        self.assertEqual(map_files(dense), {})
+
+    def test_files_that_options_name_do_not_hide_what_else_is_wrong(self):
+        dense = self.workspace()
+        masks = dense.parent / "masks"
+        masks.mkdir()
+        (masks / "view01.png.png").write_bytes(constant(10, 10, 255))
+        ranges = dense.parent / "ranges"
+        ranges.write_text("view01.png 3 2\n")
+        (dense / "stereo/patch-match.cfg").write_text("view00.png\n__auto__, 3\nno.png\n__all__\nnobody.png\nview01.png\n")
+        result = self.plan(dense, f"--Hpm.mask_path={masks}", f"--Hpm.depth_ranges={ranges}")
+        self.assert_exit(result, 3, "with a mask of another size")
+        self.assert_exit(result, 3, "ranges:1")
+        self.assert_exit(result, 3, "patch-match.cfg:3: image 'no.png'", "likewise in lines 5")
+        self.assertEqual(result.stderr.count("ERROR: "), 3)
+
     def test_a_run_at_work_and_a_missing_workspace_are_told(self):
         dense = self.workspace()
         process = self.start_tool(dense, "--Hpm.num_iterations=400")

@@ -96,6 +96,16 @@ class CliTest(unittest.TestCase):
             **keywords,
         )
 
+    def run_command(self, name, workspace, *options):
+        """Another command of the program, about the workspace."""
+        return subprocess.run(
+            [HPM_MVS, name, "--workspace_path", str(workspace), *options],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            timeout=120 * TIME_FACTOR,
+        )
+
     def start_tool(self, workspace, *options):
         """Returns when the first image is being worked on."""
         log = open(workspace / "log.txt", "wb")

@@ -72,7 +72,10 @@ TEST_F(ControllerTest, AnUnreadableImageIsPlannedWithoutAndComesBack) {
     EXPECT_THAT(InnerFolders(), testing::IsEmpty());
     // Nothing of maps of other options, and once.
     EXPECT_THAT(warnings_,
-                testing::ElementsAre(testing::HasSubstr(ViewName(1))));
+                testing::ElementsAre(
+                    testing::HasSubstr(ViewName(1)),
+                    testing::AllOf(testing::HasSubstr("maps of an earlier run"),
+                                   testing::HasSubstr(ViewName(1)))));
   }
   const std::vector<float> without = Depth(0, "geometric");
   EXPECT_NE(without, whole);

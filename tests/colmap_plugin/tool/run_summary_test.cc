@@ -29,7 +29,7 @@ TEST(RunSummaryTest, TellsWhatWasDoneAndWhatComesNext) {
   EXPECT_EQ(SummaryLines(options, summary),
             (std::vector<std::string>{
                 "12 images: 7 computed, 4 kept from an earlier run, 1 failed",
-                "Pixels with a depth: 62.5 %",
+                "Pixels with a depth, of the images computed now: 62.5 %",
                 "Pixels dropped by: angle 30.0 %, consistent views 7.5 %",
                 "Time 3 min 20 s, peak memory 1.50 GiB, AVX2",
                 "Maps: /data/dense/stereo/depth_maps and "
@@ -37,6 +37,14 @@ TEST(RunSummaryTest, TellsWhatWasDoneAndWhatComesNext) {
                 "Next: colmap stereo_fusion --workspace_path /data/dense "
                 "--input_type geometric "
                 "--output_path /data/dense/fused.ply"}));
+}
+
+TEST(RunSummaryTest, TheShareIsThatOfAllWhereNothingWasKept) {
+  RunSummary summary;
+  summary.num_problems = summary.num_computed = 3;
+  summary.valid_pixel_share = 0.5;
+  EXPECT_THAT(SummaryLines({}, summary),
+              Contains("Pixels with a depth: 50.0 %"));
 }
 
 // As when a run only makes again what an earlier stage lost.

@@ -22,6 +22,17 @@ TEST(TextTest, DurationsHaveTwoUnitsAtMost) {
   EXPECT_EQ(FormatDuration(INFINITY), "744 h 00 min");
 }
 
+TEST(TextTest, LikelyNamesAreThoseOfASlipOfTheHand) {
+  const std::vector<std::string> names = {"check", "plan", "Hpm.quality"};
+  EXPECT_EQ(LikelyName("chek", names), "check");
+  EXPECT_EQ(LikelyName("Hpm.qualty", names), "Hpm.quality");
+  EXPECT_EQ(LikelyName("Hpm-quality", names), "Hpm.quality");
+  EXPECT_EQ(LikelyName("plna", names), "");  // two of four letters
+  EXPECT_EQ(LikelyName("fuse", names), "");
+  EXPECT_EQ(LikelyName("", names), "");
+  EXPECT_EQ(LikelyName("workspace-path", {"workspace_path"}), "workspace_path");
+}
+
 TEST(TextTest, ShellWordQuotesOnlyWhatNeedsIt) {
   EXPECT_EQ(ShellWord("/a/b-1.ply"), "/a/b-1.ply");
   EXPECT_EQ(ShellWord("a b"), "'a b'");
