@@ -323,6 +323,7 @@ RunEvents PatchMatchController::Events(const RunState& run) const {
                      run.plan.stages()[at.stage].title));
   };
   events.progress = [&, name_of](const RunProgress& at) {
+    if (at.num_problems == 0) return;  // nothing to do in this stage
     progress_({run.plan.stages()[at.stage].name,
                at.problem < 0 ? "" : name_of(at.problem),
                at.number,

@@ -23,7 +23,7 @@ StageStatus StatusOf(const PlannedRun& run, int stage) {
       case MapState::kMissing:
         break;
       case MapState::kForeign:
-        ++status.num_foreign;
+        ++status.num_stale;
         break;
       case MapState::kIncomplete:
         ++status.num_incomplete;
@@ -78,7 +78,7 @@ std::string StatusText(const RunStatus& status) {
                                  "needed",
                                  "incomplete",
                                  "damaged",
-                                 "foreign");
+                                 "stale");
   for (const StageStatus& stage : status.stages) {
     text += fmt::format("{:{}} {:>9} {:>9} {:>11} {:>9} {:>9}\n",
                         stage.name,
@@ -87,7 +87,7 @@ std::string StatusText(const RunStatus& status) {
                         stage.num_needed,
                         stage.num_incomplete,
                         stage.num_damaged,
-                        stage.num_foreign);
+                        stage.num_stale);
   }
   if (!status.failing.empty()) {
     text += fmt::format(
@@ -114,7 +114,7 @@ std::string StatusJson(const RunStatus& status) {
                               {"needed", stage.num_needed},
                               {"incomplete", stage.num_incomplete},
                               {"damaged", stage.num_damaged},
-                              {"foreign", stage.num_foreign}});
+                              {"stale", stage.num_stale}});
   }
   return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) +
          "\n";

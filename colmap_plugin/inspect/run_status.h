@@ -18,11 +18,11 @@ struct StageStatus {
   int num_finished = 0;
   // What a run would make; among them maps that are there, but made without
   // those of some source (incomplete), damaged, or made with other options or
-  // inputs (foreign).
+  // inputs (stale).
   int num_needed = 0;
   int num_incomplete = 0;
   int num_damaged = 0;
-  int num_foreign = 0;
+  int num_stale = 0;
 };
 
 struct RunStatus {

@@ -162,7 +162,7 @@ std::vector<OptionSpec> MakeTable() {
           "Write colour pictures of the maps to stereo/previews"),
       HpmProblems(kCommon, kInputs, "depth_ranges", &I::depth_ranges, Anything(),
                 "File with lines IMAGE NEAR FAR: depth ranges of single images in model units, which go before depth_min "
-                "and depth_max; nothing outside is published"),
+                "and depth_max; nothing outside is published. Lines that begin with # count for nothing"),
       HpmWorkspace(kCommon, kInputs, "mask_path", &W::mask_path, Anything(),
                 "Folder with masks of the undistorted images: of a/b.jpg the mask is a/b.jpg.png, as in COLMAP; where it "
                 "is 0 the image is ignored, as reference and as source; leave a margin of half a window around what is wanted, "

@@ -60,7 +60,7 @@ std::vector<Command> MakeTable() {
        "0 all is there and good, 3 something is damaged or unreadable, 4 neither, but the next run has something to do",
        TakesOptions::kAll,
        {Row("fix", &C::fix, Anything(),
-            "Remove what is damaged, so that the next run makes only that; all else stays")}},
+            "Remove what is damaged; the next run makes it anew, and what it needs for that; all else stays")}},
       {"report", "Write a page about a workspace's maps: pictures, why pixels were dropped, times, warnings",
        "One HTML file that needs nothing else, made of the maps, their stamps and the record of the last run: image, "
        "depth and normals side by side, the share of pixels with a depth and their matching costs, what took "
@@ -90,7 +90,7 @@ std::vector<Command> MakeTable() {
       {"status", "Tell how far a workspace is: what each stage has finished and still needs",
        "Plans as a run with the same options would and looks at all maps, without changing anything. A stage's maps "
        "are finished when they are good or of no use any more; needed: a run would make them, be it that they are "
-       "missing, damaged, incomplete (made without the maps of a source) or foreign (made with other options or "
+       "missing, damaged, incomplete (made without the maps of a source) or stale (made with other options or "
        "inputs).",
        "0 complete, 4 complete but for images that cannot be computed, 8 something is needed",
        TakesOptions::kAll,

@@ -56,10 +56,10 @@ class Status(CliTest):
         self.assertEqual(stages["geometric"]["needed"], 1)
         self.assertEqual(stages["geometric"]["finished"], 3)
 
-    def test_other_options_make_maps_foreign(self):
+    def test_other_options_make_maps_stale(self):
         self.assert_exit(self.run_tool(self.dense, *FAST), 0)
         stages, _ = self.stages("--random_seed", "7", code=8)
-        self.assertEqual(stages["geometric"]["foreign"], 4)
+        self.assertEqual(stages["geometric"]["stale"], 4)
         self.assertEqual(stages["geometric"]["needed"], 4)
 
     def test_damage_is_counted_and_with_verify_also_where_length_and_time_hide_it(self):
