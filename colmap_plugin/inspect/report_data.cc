@@ -1,6 +1,7 @@
 #include "colmap_plugin/inspect/report_data.h"
 
 #include "colmap_plugin/controller/run_budget.h"
+#include "colmap_plugin/controller/unreadable_images.h"
 #include "colmap_plugin/inspect/thumbnails.h"
 #include "colmap_plugin/workspace/model_overview.h"
 #include "colmap_plugin/workspace/problem.h"
@@ -87,6 +88,10 @@ class Gatherer {
     AddSparseDepths(image, &to);
     AddStatistics(&to);
     AddMaps(image, &to);
+    if (!CanBeComputed(workspace_, problem)) {
+      to.why_not = std::string(to.has_maps ? "maps of an earlier run: " : "") +
+                   "no picture of it or of any source can be used";
+    }
     if (to.has_maps) AddConfidence(image, &to);
   }
 
@@ -249,7 +254,10 @@ const nlohmann::json& Member(const nlohmann::json& json,
 ReportData GatherReport(const ControllerOptions& options,
                         const LogSink& log,
                         const CancelToken& cancel) {
-  const Workspace workspace(options.workspace, log, cancel);
+  Workspace workspace(options.workspace, log, cancel);
+  ImageContents contents(workspace);
+  for (const std::string& line : DropUnreadable(&workspace, &contents, cancel))
+    log(LogLevel::kWarning, line);
   const ModelOverview overview(workspace, options.problems, cancel);
   const std::vector<StereoProblem> problems =
       ReadProblems(workspace, overview, options.problems, log, cancel);

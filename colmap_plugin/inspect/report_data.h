@@ -32,7 +32,9 @@ struct ReportedImage {
   std::string name;
   int width = 0, height = 0;  // of its maps; else of the working image
   bool has_maps = false;
-  std::string why_not;  // the maps cannot be read; empty: not computed
+  // The maps cannot be read, or are of a run when the image could be computed;
+  // empty, and no maps: not computed.
+  std::string why_not;
   std::vector<ReportedSource> sources;
   // Shares of the pixels, 0..1. Losses: by criterion, of what the filter took.
   std::optional<double> valid_share;

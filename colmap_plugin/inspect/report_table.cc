@@ -148,10 +148,13 @@ std::string Row(const ReportedImage& image, bool with_confidence) {
   const std::string why = !image.why_not.empty() ? Html(image.why_not)
                           : image.has_maps       ? ""
                                                  : "no maps";
-  row += Cell(fmt::format("{:.4f}", image.valid_share.value_or(-1)),
-              image.has_maps && image.valid_share
-                  ? Percent(*image.valid_share) + " %"
-                  : why);
+  row += Cell(
+      fmt::format("{:.4f}", image.valid_share.value_or(-1)),
+      image.has_maps && image.valid_share
+          ? Percent(*image.valid_share) + " %" +
+                (why.empty() ? ""
+                             : "<br><span class=\"small\">" + why + "</span>")
+          : why);
   row += fmt::format(
       "<td data-v=\"{:.4f}\">{}<br><span class=\"small\">{}</span></td>",
       1 - image.valid_share.value_or(1),

@@ -126,6 +126,8 @@ class BadImages(CliTest):
         plan = self.run_command("plan", workspace, *FAST)
         self.assert_exit(plan, 4, "1 of 4 images would fail, the first: view02.png")
         self.assertIn("Images: 0 to compute, 3 kept", plan.stdout)
+        self.assert_exit(self.run_command("report", workspace, *FAST), 0)
+        self.assertIn("maps of an earlier run: no picture", (workspace / "stereo/report.html").read_text())
         path.write_bytes(good)
         self.assert_exit(self.run_command("status", workspace, *FAST), 8)
         self.assert_exit(self.run_tool(workspace, *FAST), 0)
