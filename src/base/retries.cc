@@ -135,6 +135,10 @@ std::error_code MakeFolder(const std::filesystem::path& path) {
   std::error_code last;
   RetryFileSystem(path, [&](std::error_code& error) {
     std::filesystem::create_directories(path, error);
+    // libstdc++ takes a folder above that it cannot look at for one that is
+    // there, and then lacks it.
+    if (error == std::errc::no_such_file_or_directory)
+      std::filesystem::create_directories(path, error);
     last = error;
     return !error;
   });
