@@ -74,6 +74,7 @@ With `--Hpm.log_format json` the standard output of `patch_match_stereo` holds o
 | `options` | `options`: an object with the value of every option, "the method's own" as a number |
 | `message` | `level`: `info`, `warning` or `error`; `message` |
 | `progress` | `stage`: name in files and stamps; `title`: for people; `image`: empty at the end of a stage; `image_number`, `num_images`: of the stage; `fraction`: of the whole run, by estimated work; `seconds_left`: null while unknown |
+| `result` | the last line of a run that came to its end. `exit_code`; `images`: references of the run; `computed`, `kept`: numbers of images; `failed`: their names; `valid_pixel_share`: pixels with a depth, 0..1, of the images computed now, null where there are none; `seconds`; `peak_memory_bytes` |
 )";
 
 constexpr char kMarkdownExitCodes[] = R"(

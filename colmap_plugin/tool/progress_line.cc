@@ -134,6 +134,13 @@ void ProgressLine::Options(const nlohmann::json& options) {
   Draw();
 }
 
+void ProgressLine::Result(nlohmann::json members) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (!json_) return;
+  members["event"] = "result";
+  WriteJson(std::move(members));
+}
+
 void ProgressLine::Close() {
   const std::lock_guard<std::mutex> lock(mutex_);
   Erase();

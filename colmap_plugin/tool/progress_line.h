@@ -53,6 +53,8 @@ class ProgressLine {
   void Update(const ProgressEvent& event);
   // The options of the run, an object with a member for each.
   void Options(const nlohmann::json& options);
+  // As JSON only: what a run that came to its end has done.
+  void Result(nlohmann::json members);
   // Takes the line off the terminal; a later Update() brings it back.
   void Close();
 

@@ -53,14 +53,28 @@ int RunAndReport(const ControllerOptions& options,
   // COLMAP's last line, which wrappers look for.
   log(LogLevel::kInfo,
       fmt::format("Elapsed time: {:.3f} [minutes]", summary.seconds / 60));
-  if (summary.failed.empty()) return 0;
-  log(LogLevel::kError,
-      fmt::format(
-          "{} of {} images failed: {}; the maps of the others are valid",
-          summary.failed.size(),
-          summary.num_problems,
-          ListOf(summary.failed)));
-  return ExitCode(ErrorCode::kPartial);
+  if (!summary.failed.empty()) {
+    log(LogLevel::kError,
+        fmt::format(
+            "{} of {} images failed: {}; the maps of the others are valid",
+            summary.failed.size(),
+            summary.num_problems,
+            ListOf(summary.failed)));
+  }
+  const int exit_code =
+      summary.failed.empty() ? 0 : ExitCode(ErrorCode::kPartial);
+  progress->Result(
+      {{"exit_code", exit_code},
+       {"images", summary.num_problems},
+       {"computed", summary.num_computed},
+       {"kept", summary.num_kept},
+       {"failed", summary.failed},
+       {"valid_pixel_share",
+        summary.valid_pixel_share ? nlohmann::json(*summary.valid_pixel_share)
+                                  : nlohmann::json()},
+       {"seconds", summary.seconds},
+       {"peak_memory_bytes", summary.peak_memory_bytes}});
+  return exit_code;
 }
 
 // Says what is wrong with the options, or does the work and says what went

@@ -35,7 +35,13 @@ class Log(CliTest):
         for event in events:
             self.assertGreaterEqual(event["time"], 0)
             by_kind.setdefault(event["event"], []).append(event)
-        self.assertEqual(set(by_kind), {"options", "message", "progress"})
+        self.assertEqual(set(by_kind), {"options", "message", "progress", "result"})
+        result = events[-1]
+        self.assertEqual(
+            {name: result[name] for name in ("event", "exit_code", "images", "computed", "kept", "failed")},
+            {"event": "result", "exit_code": 4, "images": 4, "computed": 3, "kept": 0, "failed": ["view02.png"]},
+        )
+        self.assertTrue(0 < result["valid_pixel_share"] <= 1)
         (options,) = by_kind["options"]
         self.assertEqual(options["options"]["PatchMatchStereo.window_radius"], 3)
         levels = {m["level"]: m["message"] for m in by_kind["message"]}
