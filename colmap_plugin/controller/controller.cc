@@ -296,6 +296,10 @@ RunSummary PatchMatchController::Summarize(const RunState& run,
   summary.inputs_read = run.resources.inputs->counts();
   summary.warnings = warnings_;
   summary.num_fusable = CountFinalMaps(run.workspace, run.plan);
+  summary.fusion_finds_nothing = std::none_of(
+      run.problems.begin(), run.problems.end(), [](const StereoProblem& p) {
+        return p.is_reference && p.shares_points;
+      });
   if (run.statistics.AnyComputed() || run.statistics.AnyFailed()) {
     // What it says is not of the maps any more.
     std::error_code ignored;

@@ -45,6 +45,8 @@ struct RunSummary {
   FilterLosses filter_losses;  // the same, of what has no depth
   // Images of the workspace with final maps: what fusion will find.
   int num_fusable = 0;
+  // None of the references shares tracks, so fusion joins no images.
+  bool fusion_finds_nothing = false;
   double cost_evaluations_per_pixel = 0;
   uint64_t peak_memory_bytes = 0;
   InputCounts inputs_read;

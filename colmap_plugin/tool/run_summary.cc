@@ -75,6 +75,13 @@ std::vector<std::string> SummaryLines(const ControllerOptions& options,
   lines.push_back(fmt::format("Maps: {} and {}",
                               (stereo / "depth_maps").string(),
                               (stereo / "normal_maps").string()));
+  if (summary.fusion_finds_nothing) {
+    lines.emplace_back(
+        "Next: triangulate sparse points with the known poses; before that "
+        "colmap stereo_fusion finds nothing in common between the images (see "
+        "the warning). hpm_mvs export --format ply shows each map by itself");
+    return lines;
+  }
   if (MinNumPixels(summary.num_fusable) > 0) {
     lines.push_back(fmt::format(
         "{} images with maps: fusion wants every point seen in 5 unless told "

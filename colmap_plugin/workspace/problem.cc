@@ -102,6 +102,7 @@ class ProblemReader {
       problem.depth_min = range->min;
       problem.depth_max = range->max;
       problem.published = ranges_.Published(ref);
+      problem.shares_points = automatic_.SharesPoints(ref);
       problems.push_back(std::move(problem));
     }
     if (num_cut_ > 0 && log_) {

@@ -28,6 +28,9 @@ struct StereoProblem {
   // be known to some processes only; these are the same for all that share a
   // run.
   std::vector<int> wanted_sources = {};
+  // Whether the reference shares tracks of sparse points with another image:
+  // stereo_fusion joins no others.
+  bool shares_points = true;
 };
 
 struct ProblemOptions {

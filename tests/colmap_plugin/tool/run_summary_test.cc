@@ -47,6 +47,15 @@ TEST(RunSummaryTest, TheShareIsThatOfAllWhereNothingWasKept) {
               Contains("Pixels with a depth: 50.0 %"));
 }
 
+TEST(RunSummaryTest, NoFusionIsNamedThatWouldFindNothing) {
+  RunSummary summary;
+  summary.num_problems = summary.num_computed = summary.num_fusable = 12;
+  summary.fusion_finds_nothing = true;
+  const std::vector<std::string> lines = SummaryLines({}, summary);
+  EXPECT_THAT(lines.back(), HasSubstr("Next: triangulate"));
+  EXPECT_THAT(lines, Not(Contains(HasSubstr("--output_path"))));
+}
+
 // As when a run only makes again what an earlier stage lost.
 TEST(RunSummaryTest, WithoutFinalMapsThereIsNoShareOfThem) {
   RunSummary summary;

@@ -41,6 +41,7 @@ class WithoutTracksTest : public ::testing::Test {
       EXPECT_LT(problem.depth_min, 7);
       EXPECT_GT(problem.depth_max, 9);
       EXPECT_LT(problem.depth_max, 100);
+      EXPECT_FALSE(problem.shares_points);
     }
     EXPECT_THAT(files_.Warnings(),
                 ElementsAre(HasSubstr("24 reference images (the first: 0.jpg)"),
