@@ -171,6 +171,7 @@ RunSummary PatchMatchController::Run() {
   ImageContents contents(workspace);
   for (const std::string& line : DropUnreadable(&workspace, &contents, stop))
     log_(LogLevel::kWarning, line);
+  if (share.IsWhole()) ForgetMended(workspace, contents);
   workspace.StretchDeepImages(FindDeepRange(workspace, &contents, log_, stop));
 
   log_(LogLevel::kInfo, "Reading configuration...");
@@ -282,8 +283,9 @@ RunSummary PatchMatchController::Summarize(const RunState& run,
        FilterWarnings(run.statistics.losses(), options_)) {
     log_(LogLevel::kWarning, line);
   }
-  WarnOfOldMaps(run.workspace, run.problems, run.plan, log_);
-  WarnOfEmptyMaps(run.statistics.valid_shares(), log_);
+  if (run.share.IsWhole() || run.share.Finishes())
+    WarnOfOldMaps(run.workspace, run.problems, run.plan, log_);
+  WarnOfEmptyMaps(run.statistics.valid_shares(), run.statistics.losses(), log_);
   std::vector<std::string> names;
   for (size_t p = 0; p < run.problems.size(); ++p) {
     const StereoProblem& problem = run.problems[p];
@@ -296,8 +298,15 @@ RunSummary PatchMatchController::Summarize(const RunState& run,
   summary.inputs_read = run.resources.inputs->counts();
   summary.warnings = warnings_;
   summary.num_fusable = CountFinalMaps(run.workspace, run.plan);
-  summary.fusion_finds_nothing = std::none_of(
-      run.problems.begin(), run.problems.end(), [](const StereoProblem& p) {
+  const auto& problems = run.problems;
+  const auto num_references =
+      std::count_if(problems.begin(), problems.end(), [](const auto& p) {
+        return p.is_reference;
+      });
+  // Maps of other runs may share tracks.
+  summary.fusion_finds_nothing =
+      summary.num_fusable <= num_references &&
+      std::none_of(problems.begin(), problems.end(), [](const auto& p) {
         return p.is_reference && p.shares_points;
       });
   if (run.statistics.AnyComputed() || run.statistics.AnyFailed()) {
@@ -327,7 +336,7 @@ RunEvents PatchMatchController::Events(const RunState& run) const {
                      run.plan.stages()[at.stage].title));
   };
   events.progress = [&, name_of](const RunProgress& at) {
-    if (at.num_problems == 0) return;  // nothing to do in this stage
+    if (run.plan.num_open() == 0) return;  // stages without work, one by one
     progress_({run.plan.stages()[at.stage].name,
                at.problem < 0 ? "" : name_of(at.problem),
                at.number,

@@ -35,25 +35,31 @@ void WarnOfOldMaps(const Workspace& workspace,
                    const LogSink& log) {
   const int last = static_cast<int>(plan.stages().size()) - 1;
   ImageFault old;
+  int num_references = 0;
   for (const StereoProblem& problem : problems) {
+    num_references += problem.is_reference;
     if (!problem.is_reference || CanBeComputed(workspace, problem)) continue;
     if (StateOf(plan.Files(last, problem.ref_image).depth))
       old.Add(workspace.ImageName(problem.ref_image));
   }
   if (old.num() == 0) return;
   log(LogLevel::kWarning,
-      old.Line(static_cast<int>(problems.size()),
+      old.Line(num_references,
                "that cannot be computed have maps of an earlier run, which "
                "stereo_fusion would use") +
           "; mend the images and run again, or delete these maps");
 }
 
 void WarnOfEmptyMaps(const std::map<std::string, double>& valid_shares,
+                     const std::map<std::string, FilterLosses>& losses,
                      const LogSink& log) {
   constexpr double kNextToNothing = 0.01;
   ImageFault empty;
   for (const auto& [image, share] : valid_shares) {
-    if (share < kNextToNothing) empty.Add(image);
+    const auto found = losses.find(image);
+    const bool is_told =
+        found != losses.end() && !FilterWarnings({*found}, {}).empty();
+    if (share < kNextToNothing && !is_told) empty.Add(image);
   }
   if (empty.num() == 0) return;
   log(LogLevel::kWarning,

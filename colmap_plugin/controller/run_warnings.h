@@ -2,6 +2,7 @@
 // line for each kind of fault.
 #pragma once
 
+#include "colmap_plugin/controller/filter_losses.h"
 #include "colmap_plugin/controller/image_contents.h"
 #include "colmap_plugin/controller/stages.h"
 #include "colmap_plugin/workspace/problem.h"
@@ -25,8 +26,10 @@ void WarnOfOldMaps(const Workspace& workspace,
                    const StagePlan& plan,
                    const LogSink& log);
 
-// valid_shares: by image, of its pixels, 0..1, those with a depth.
+// But for those of which FilterWarnings() tells. valid_shares: by image, of its
+// pixels, 0..1, those with a depth.
 void WarnOfEmptyMaps(const std::map<std::string, double>& valid_shares,
+                     const std::map<std::string, FilterLosses>& losses,
                      const LogSink& log);
 
 }  // namespace hpm

@@ -1,15 +1,20 @@
 #include "colmap_plugin/controller/unreadable_images.h"
 
+#include "colmap_plugin/controller/run_budget.h"
 #include "colmap_plugin/formats/atomic_file.h"
-#include "src/base/error.h"
+#include "src/base/input_file.h"
 #include "src/image/decode_picture.h"
+#include "src/image/load_image.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <set>
 #include <system_error>
 
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 namespace hpm {
 namespace fs = std::filesystem;
@@ -27,15 +32,52 @@ std::vector<int> ImagesWithPicture(const Workspace& workspace) {
   return images;
 }
 
+// Decoded once more: what failed before may have been the disk or a limit of
+// the moment, and good contents must not be given up for ever.
+bool IsDamaged(const Workspace& workspace, int image) {
+  const Camera& camera = workspace.camera(image);
+  try {
+    LoadGrayImage(workspace.ImagePath(image),
+                  camera.width,
+                  camera.height,
+                  workspace.Decoding(image));
+    return false;
+  } catch (const UnreadableFile&) {
+    return false;
+  } catch (const Error&) {
+    return true;
+  }
+}
+
 }  // namespace
 
 void RecordUnreadable(const Workspace& workspace,
                       const ImageContents& contents,
                       int image,
                       const std::string& why) {
-  const std::string& hash = contents.HashOf(image);
   // Of a file that cannot be read at all, there is no hash.
-  if (!hash.empty()) WriteFileAtomically(FolderOf(workspace) / hash, why);
+  const std::string& hash = contents.HashOf(image);
+  if (hash.empty() || !contents.IsUnchanged(image) ||
+      !IsDamaged(workspace, image)) {
+    return;
+  }
+  WriteFileAtomically(FolderOf(workspace) / hash, why);
+}
+
+void ForgetMended(const Workspace& workspace, const ImageContents& contents) {
+  std::set<std::string> hashes;
+  for (int i = 0; i < workspace.num_images(); ++i)
+    hashes.insert(contents.HashOf(i));
+  std::error_code error;
+  std::vector<fs::path> mended;
+  for (fs::directory_iterator it(FolderOf(workspace), error), end;
+       !error && it != end;
+       it.increment(error)) {
+    if (hashes.count(it->path().filename().string()) == 0)
+      mended.push_back(it->path());
+  }
+  for (const fs::path& path : mended) fs::remove(path, error);
+  fs::remove(FolderOf(workspace), error);  // if it is empty
 }
 
 std::vector<std::string> DropUnreadable(Workspace* workspace,
@@ -62,7 +104,7 @@ std::vector<std::string> DropTruncated(Workspace* workspace,
                                        const CancelToken& cancel) {
   const std::vector<int> images = ImagesWithPicture(*workspace);
   std::vector<std::string> faults(images.size());
-  tbb::parallel_for(size_t{0}, images.size(), [&](size_t i) {
+  const auto look = [&](size_t i) {
     cancel.ThrowIfCancelled();
     try {
       ReadPictureFile(workspace->ImagePath(images[i]));
@@ -70,6 +112,14 @@ std::vector<std::string> DropTruncated(Workspace* workspace,
       if (error.code() != ErrorCode::kBadInput) throw;
       faults[i] = error.what();
     }
+  };
+  uint64_t largest = 0;  // held in memory by each thread
+  for (const int image : images) {
+    if (const auto& size = workspace->file_size(image))
+      largest = std::max(largest, size->file_bytes);
+  }
+  tbb::task_arena(ThreadsToDecode(largest)).execute([&] {
+    tbb::parallel_for(size_t{0}, images.size(), look);
   });
   std::vector<std::string> lines;
   for (size_t i = 0; i < images.size(); ++i) {

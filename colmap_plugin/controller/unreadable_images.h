@@ -13,6 +13,7 @@
 
 namespace hpm {
 
+// Of an image that is damaged now, not one that could only not be read then.
 // why: one line for people.
 void RecordUnreadable(const Workspace& workspace,
                       const ImageContents& contents,
@@ -26,7 +27,11 @@ std::vector<std::string> DropUnreadable(Workspace* workspace,
                                         ImageContents* contents,
                                         const CancelToken& cancel);
 
-// The same for images whose file ends too early (see
+// Removes the records of contents that no image has any more. After
+// DropUnreadable(), and where nobody else works on the workspace.
+void ForgetMended(const Workspace& workspace, const ImageContents& contents);
+
+// The same as DropUnreadable() for images whose file ends too early (see
 // src/image/image_integrity.h), which nobody has decoded yet. Reads all images.
 std::vector<std::string> DropTruncated(Workspace* workspace,
                                        const CancelToken& cancel);

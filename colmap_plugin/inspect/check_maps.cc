@@ -254,14 +254,12 @@ class Checker {
     if (has_fault) return;  // was told
     if (!CanBeComputed(workspace_, problem)) {
       if (is_public && problem.is_reference) {
-        const std::string why =
-            "the image cannot be computed: no picture of it or of any source";
-        if (any) {
-          add(FindingKind::kStale,
-              "of an earlier run, and fusion would use it: " + why);
-        } else {
-          add(FindingKind::kMissing, why);
-        }
+        add(FindingKind::kMissing,
+            std::string(any ? "what is there is of an earlier run, and fusion "
+                              "would use it: "
+                            : "") +
+                "the image cannot be computed: no picture of it or of any "
+                "source");
       }
       return;
     }

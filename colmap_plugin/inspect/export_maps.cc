@@ -173,19 +173,30 @@ nlohmann::json Description(const Workspace& workspace,
   return json;
 }
 
-// What an earlier export of the same maps in another format wrote there, whose
-// files may still lie beside: how its steps are to be read, say.
-void KeepWhatOthersNeed(const fs::path& path, nlohmann::json* description) {
+// How the PNGs of an earlier export, which still lie beside, are to be read.
+void KeepStepsOfPngs(const fs::path& folder,
+                     const std::string& name,
+                     nlohmann::json* description) {
   constexpr uint64_t kMostBytes = 1 << 20;
-  if (!Exists(path)) return;
-  nlohmann::json old = nlohmann::json::parse(
-      ReadWholeFile(path, kMostBytes), nullptr, /*allow_exceptions=*/false);
-  if (!old.is_object()) return;
-  for (const char* key : {"input_type", "width", "height"}) {
-    if (!old.contains(key) || old[key] != (*description)[key]) return;
+  nlohmann::json old;
+  try {
+    const fs::path path = folder / (name + ".json");
+    if (!Exists(path)) return;
+    old = nlohmann::json::parse(
+        ReadWholeFile(path, kMostBytes), nullptr, /*allow_exceptions=*/false);
+  } catch (const Error&) {
+    return;  // it is replaced
   }
-  old.update(*description);
-  *description = std::move(old);
+  if (!old.is_object()) return;
+  const std::pair<const char*, const char*> kept[] = {
+      {"depth_per_step", ".depth.png"},
+      {"normal_from_value", ".normal.png"},
+      {"confidence_per_step", ".confidence.png"}};
+  for (const auto& [key, end] : kept) {
+    if (old.contains(key) && !description->contains(key) &&
+        Exists(folder / (name + end)))
+      (*description)[key] = old[key];
+  }
 }
 
 [[noreturn]] void ThrowUnfit(const fs::path& path) {
@@ -221,6 +232,10 @@ void ExportImage(const Workspace& workspace,
       workspace.MapPath(image, MapKind::kNormal, options.input_type);
   ThrowIfFaulty(depth_path, FaultOfDepths(depth_path, kAnyDepth));
   ThrowIfFaulty(normal_path, FaultOfNormals(normal_path));
+  const fs::path confidence_path =
+      workspace.MapPath(image, MapKind::kConfidence, options.input_type);
+  if (Exists(confidence_path))
+    ThrowIfFaulty(confidence_path, FaultOfConfidence(confidence_path));
   const Map depth = ReadMap(depth_path);
   const Map normal = ReadMap(normal_path);
   CheckPair(depth, normal, depth_path);
@@ -257,13 +272,10 @@ void ExportImage(const Workspace& workspace,
     WriteFileAtomically(folder / (name + ".normal" + end),
                         Encode(normal, options.format));
   }
-  const fs::path confidence_path =
-      workspace.MapPath(image, MapKind::kConfidence, options.input_type);
   nlohmann::json description =
       Description(workspace, image, depth, options, step);
   if (Exists(confidence_path)) {
     const Map confidence = ReadMap(confidence_path);
-    ThrowIfFaulty(confidence_path, FaultOfConfidence(confidence_path));
     if (confidence.channels != 1 || confidence.width != depth.width ||
         confidence.height != depth.height)
       ThrowUnfit(confidence_path);
@@ -277,10 +289,9 @@ void ExportImage(const Workspace& workspace,
         options.format == "png16" ? ConfidenceAsPng(confidence)
                                   : Encode(confidence, options.format));
   }
-  const fs::path description_path = folder / (name + ".json");
-  KeepWhatOthersNeed(description_path, &description);
+  KeepStepsOfPngs(folder, name, &description);
   WriteFileAtomically(
-      description_path,
+      folder / (name + ".json"),
       description.dump(
           2, ' ', false, nlohmann::json::error_handler_t::replace) +
           "\n");

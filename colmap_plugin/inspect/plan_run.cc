@@ -18,6 +18,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -99,18 +100,22 @@ class Planner {
   // find what else is wrong.
   bool ReadAndPlan() {
     ControllerOptions options = options_;
-    if (Attempt([&] { ReadAndPlanWith(options, log_); })) return true;
-    const LogSink silent = [](LogLevel, const std::string&) {};
+    std::set<std::string> said;
+    const LogSink once = [&](LogLevel level, const std::string& line) {
+      if (said.insert(line).second) log_(level, line);
+    };
+    if (Attempt([&] { ReadAndPlanWith(options, once); })) return true;
     for (fs::path* file :
          {&options.workspace.mask_path, &options.problems.depth_ranges}) {
       if (file->empty()) continue;
       file->clear();
-      if (Attempt([&] { ReadAndPlanWith(options, silent); })) return true;
+      if (Attempt([&] { ReadAndPlanWith(options, once); })) return true;
     }
     return false;
   }
 
   void ReadAndPlanWith(const ControllerOptions& options, const LogSink& log) {
+    run_.reset();  // two models would be twice the memory
     run_ = std::make_unique<PlannedRun>(options, log, cancel_);
     const RunShare share(options.hpm);
     Attempt([&] {
@@ -261,7 +266,7 @@ class Planner {
   const LogSink& log_;
   const CancelToken& cancel_;
   std::unique_ptr<PlannedRun> run_;
-  double planning_seconds_ = 0;  // which the run takes, too
+  double planning_seconds_ = 0;  // about as long as the run plans
   RunPlan plan_;
 };
 

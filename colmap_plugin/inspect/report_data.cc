@@ -88,7 +88,7 @@ class Gatherer {
     AddSparseDepths(image, &to);
     AddStatistics(&to);
     AddMaps(image, &to);
-    if (!CanBeComputed(workspace_, problem)) {
+    if (to.why_not.empty() && !CanBeComputed(workspace_, problem)) {
       to.why_not = std::string(to.has_maps ? "maps of an earlier run: " : "") +
                    "no picture of it or of any source can be used";
     }
@@ -256,8 +256,10 @@ ReportData GatherReport(const ControllerOptions& options,
                         const CancelToken& cancel) {
   Workspace workspace(options.workspace, log, cancel);
   ImageContents contents(workspace);
-  for (const std::string& line : DropUnreadable(&workspace, &contents, cancel))
-    log(LogLevel::kWarning, line);
+  for (const std::string& line :
+       DropUnreadable(&workspace, &contents, cancel)) {
+    if (log) log(LogLevel::kWarning, line);
+  }
   const ModelOverview overview(workspace, options.problems, cancel);
   const std::vector<StereoProblem> problems =
       ReadProblems(workspace, overview, options.problems, log, cancel);

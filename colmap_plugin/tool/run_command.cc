@@ -146,6 +146,8 @@ int RunCommand(const Command& command,
   parsed.run.options.controller.hpm.log_format = HpmOptions().log_format;
   if (parsed.run.help) return Print(CommandHelp(command), tool);
   return Guarded(tool, parsed.run, [&](ProgressLine* progress) {
+    for (const std::string& note : parsed.run.notes)
+      progress->Log(LogLevel::kWarning, note);
     const CommandCall call = {
         parsed.run.options.controller,
         parsed.own,

@@ -117,12 +117,14 @@ class BadImages(CliTest):
         result = self.run_tool(workspace, *FAST)
         self.assert_exit(result, 4, "1 of 4 images failed", "view02.png")
         self.assertRegex(result.stderr, "maps of an earlier run.*view02.png")
+        self.assertNotIn("no report", result.stdout + result.stderr)
+        self.assertIn("maps of an earlier run: no picture", (workspace / "stereo/report.html").read_text())
         status = self.run_command("status", workspace, *FAST)
         self.assert_exit(status, 4)
         self.assertIn("nothing to do until these images are mended", status.stdout)
         check = self.run_command("check", workspace, *FAST)
         self.assert_exit(check, 4)
-        self.assertIn("view02.png geometric: of an earlier run, and fusion would use it", check.stdout)
+        self.assertIn("view02.png geometric: what is there is of an earlier run, and fusion would use it", check.stdout)
         plan = self.run_command("plan", workspace, *FAST)
         self.assert_exit(plan, 4, "1 of 4 images would fail, the first: view02.png")
         self.assertIn("Images: 0 to compute, 3 kept", plan.stdout)
@@ -132,6 +134,7 @@ class BadImages(CliTest):
         self.assert_exit(self.run_command("status", workspace, *FAST), 8)
         self.assert_exit(self.run_tool(workspace, *FAST), 0)
         self.assert_exit(self.run_command("status", workspace, *FAST), 0)
+        self.assertFalse((workspace / "stereo/hpm_mvs/unreadable_images").exists())
 
     def test_a_source_without_file_is_left_out_and_no_failure(self):
         """Only references count as failed: all maps that were asked for exist."""
