@@ -1,5 +1,5 @@
 // Times the kernels of the CUDA backend on a closed-form scene, by variant; see
-// bench/gpu_bench.sh. Whole runs are timed by bench/gpu/pipeline.py.
+// bench/gpu_bench.sh. Whole runs are timed by bench/gpu/runs.py.
 //
 //   hpm_gpu_bench --out results.json [--width 3200] [--height 2130]
 //       [--srcs 10,20] [--scene depth_step] [--variants byte,quad]

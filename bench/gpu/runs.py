@@ -26,6 +26,8 @@ RUNS = {
     "cuda hpm": [*CUDA, "--Hpm.method", "hpm"],
     "cuda hpm_fast": [*CUDA, "--Hpm.method", "hpm_fast"],
     "cuda hpm_plus, low": [*CUDA, "--Hpm.quality", "low"],
+    "cuda hpm_plus, 12 in flight": [*CUDA, "--Hpm.gpu_images", "12"],
+    "cuda hpm_plus, low, one kind of maps": [*CUDA, "--Hpm.quality", "low", "--Hpm.keep_photometric", "0"],
     "cuda hpm_plus, 1 in flight": [*CUDA, "--Hpm.gpu_images", "1"],
 }
 CPU_RUN = {"cpu hpm_plus, 2 threads": ["--Hpm.device", "cpu", "--PatchMatchStereo.num_threads", "2"]}
