@@ -39,6 +39,7 @@ Method Plus() {
   departures.geom_candidates = 4;
   departures.geom_views = 2;
   departures.half_visits = true;
+  departures.propagate_views = true;
   departures.fit_planes = true;
   return {kDefaultMethod,
           "the default: HPM-MVS with planes of regions that have evidence of "

@@ -42,8 +42,9 @@ struct Departures {
   bool search_near = false;           // no hypotheses from the whole range
   int geom_candidates = kNumRegions;  // regions that a visit looks into
   int geom_views = kMaxViews;         // few of those trusted; kMaxViews: all
-  bool half_visits = false;  // all but the last of a level visit one colour
-  bool fit_planes = false;   // the last one ends in src/engine/local_planes.h
+  bool half_visits = false;      // all but the last of a level visit one colour
+  bool propagate_views = false;  // see src/engine/view_propagation.h
+  bool fit_planes = false;  // the last one ends in src/engine/local_planes.h
 };
 
 // Of those who ask for no other.

@@ -62,6 +62,8 @@ struct Pass {
   // Only one colour of the checkerboard is visited after the start; the other
   // one follows it in the end (src/core/take_neighbour.h).
   bool half_visits = false;
+  // kGeometric: starts with src/engine/view_propagation.h.
+  bool propagate_views = false;
   // After the clean-up every pixel takes the plane that its neighbourhood lies
   // on (src/engine/local_planes.h).
   bool fit_planes = false;

@@ -4,6 +4,7 @@
 #include "src/engine/local_planes.h"
 #include "src/engine/mine_regions.h"
 #include "src/engine/phase_timer.h"
+#include "src/engine/view_propagation.h"
 #include "src/engine/visit_params.h"
 #include "src/engine/work_estimate.h"
 #include "src/prior/build_prior.h"
@@ -130,16 +131,16 @@ void RunPasses(Backend* backend,
             *map, views.ref.camera, *views.ref.image, pass.level, range);
       }
     }
+    const auto score = [&](const std::vector<PixelPlane>& planes) {
+      return backend->Score(planes, {control.cancel, nullptr});
+    };
+    if (pass.propagate_views) {
+      PhaseTimer timer(times, "propagate views");
+      PropagateViews(views, params, score, map);
+    }
     if (pass.regions != RegionPriors::kNone) {
       PhaseTimer timer(times, "build prior");
-      MinedRegions mined = MineRegions(
-          views,
-          params,
-          *map,
-          pass.id,
-          [&](const std::vector<PixelPlane>& planes) {
-            return backend->Score(planes, {control.cancel, nullptr});
-          });
+      MinedRegions mined = MineRegions(views, params, *map, pass.id, score);
       map->priors = std::move(mined.priors);
       map->unexplained = std::move(mined.unexplained);
     }

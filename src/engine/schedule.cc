@@ -146,6 +146,7 @@ class StageList {
     pass.max_views = departures.geom_views;
     pass.few_views = departures.geom_views < kMaxViews;
     pass.half_visits = departures.half_visits && !last_of_level;
+    pass.propagate_views = departures.propagate_views;
     pass.fit_planes = departures.fit_planes && last_of_level && level == 0;
     stage.passes.push_back(pass);
     stages_->push_back(stage);

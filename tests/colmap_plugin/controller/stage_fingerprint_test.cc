@@ -103,6 +103,7 @@ TEST(StageFingerprint, EveryMemberOfAPassCounts) {
          max_views,
          few_views,
          half_visits,
+         propagate_views,
          fit_planes] = pass;
   ExpectEveryMemberCounts(pass,
                           kind,
@@ -118,6 +119,7 @@ TEST(StageFingerprint, EveryMemberOfAPassCounts) {
                           max_views,
                           few_views,
                           half_visits,
+                          propagate_views,
                           fit_planes);
 }
 

@@ -1,0 +1,163 @@
+#include "src/engine/view_propagation.h"
+
+#include "tests/cpu/scene_views.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace hpm {
+namespace {
+
+constexpr int kWidth = 96;
+constexpr int kHeight = 72;
+
+// A tilted plane in four images. The sources know where it is, the reference
+// has something else.
+class ViewPropagationTest : public testing::Test {
+ protected:
+  ViewPropagationTest() : map_(kWidth, kHeight) {
+    SceneOptions options;
+    options.num_views = 4;
+    options.width = kWidth;
+    options.height = kHeight;
+    rendered_ = RenderViews(MakeScene("tilted_plane", options), 1);
+    views_ = AsViewSet(rendered_);
+    for (size_t j = 0; j < views_.srcs.size(); ++j) SetDepth(j, 1);
+    SetMap(1.5f);
+  }
+
+  // The truth times `scale` in source view j, or in the reference, which
+  // thinks that it faces the plane.
+  void SetDepth(size_t j, float scale) {
+    std::vector<float> inverse;
+    for (const float z : rendered_[j + 1].truth.depth)
+      inverse.push_back(1 / (scale * z));
+    views_.srcs[j].inverse_depth =
+        std::make_shared<const InverseDepthMap>(InverseDepthMap::Of(inverse));
+  }
+  void SetMap(float scale) {
+    for (int row = 0; row < kHeight; ++row) {
+      for (int col = 0; col < kWidth; ++col) {
+        const size_t at = static_cast<size_t>(row) * kWidth + col;
+        map_.planes[at] = PlaneFromDepth(views_.ref.camera,
+                                         static_cast<float>(col),
+                                         static_cast<float>(row),
+                                         scale * TrueDepth(at),
+                                         {0, 0, -1});
+      }
+    }
+  }
+
+  float TrueDepth(size_t at) const { return rendered_[0].truth.depth[at]; }
+
+  float DepthOf(size_t at) const {
+    return DepthAt(views_.ref.camera,
+                   map_.planes[at],
+                   static_cast<float>(at % kWidth),
+                   static_cast<float>(at / kWidth));
+  }
+
+  // The images match best on `matching_scale_` times the true depth.
+  void Propagate() {
+    PropagateViews(
+        views_,
+        params_,
+        [this](const std::vector<PixelPlane>& planes) {
+          std::vector<float> costs;
+          for (const auto& [col, row, plane] : planes) {
+            const float z = DepthAt(views_.ref.camera,
+                                    plane,
+                                    static_cast<float>(col),
+                                    static_cast<float>(row));
+            const float best =
+                matching_scale_ *
+                TrueDepth(static_cast<size_t>(row) * kWidth + col);
+            costs.push_back(std::fabs(z - best));
+          }
+          num_asked_ += planes.size();
+          return costs;
+        },
+        &map_);
+  }
+
+  // Share of pixels within half a percent of `scale` times the true depth.
+  double ShareAt(float scale) const {
+    int count = 0;
+    for (size_t at = 0; at < map_.planes.size(); ++at)
+      count += std::fabs(DepthOf(at) / (scale * TrueDepth(at)) - 1) < 0.005f;
+    return count / static_cast<double>(map_.planes.size());
+  }
+
+  std::vector<RenderedView> rendered_;
+  ViewSet views_;
+  HypothesisMap map_;
+  MethodParams params_;
+  size_t num_asked_ = 0;
+  float matching_scale_ = 1;
+};
+
+TEST_F(ViewPropagationTest, WhatTheSourcesFoundComesWithItsNormal) {
+  EXPECT_EQ(ShareAt(1), 0);
+  Propagate();
+  EXPECT_GT(ShareAt(1), 0.8);
+  int num_taken = 0;
+  for (size_t at = 0; at < map_.planes.size(); ++at) {
+    if (map_.planes[at].normal.z == -1) continue;
+    ++num_taken;
+    EXPECT_GT(Dot(map_.planes[at].normal, rendered_[0].truth.normals[at]),
+              std::cos(0.02f));
+  }
+  EXPECT_GT(num_taken, 0.8 * kWidth * kHeight);
+}
+
+TEST_F(ViewPropagationTest, OneSourceIsEnough) {
+  for (size_t j = 1; j < views_.srcs.size(); ++j)
+    views_.srcs[j].inverse_depth = nullptr;
+  Propagate();
+  EXPECT_GT(ShareAt(1), 0.5);
+}
+
+TEST_F(ViewPropagationTest, TheMostSourcesHaveTheWord) {
+  SetDepth(0, 1.2f);
+  Propagate();
+  EXPECT_GT(ShareAt(1), 0.6);
+}
+
+TEST_F(ViewPropagationTest, TheImagesDecide) {
+  matching_scale_ = 1.5f;
+  Propagate();
+  EXPECT_GT(num_asked_, 0u);
+  EXPECT_EQ(ShareAt(1.5f), 1);
+}
+
+TEST_F(ViewPropagationTest, WhatAsManySourcesFoundStays) {
+  SetMap(1);
+  Propagate();
+  EXPECT_EQ(num_asked_, 0u);
+  EXPECT_EQ(ShareAt(1), 1);
+}
+
+TEST_F(ViewPropagationTest, NothingComesFromOutsideTheDepthRange) {
+  views_.depth_min = 1e6f;
+  views_.depth_max = 2e6f;
+  Propagate();
+  EXPECT_EQ(num_asked_, 0u);
+}
+
+TEST_F(ViewPropagationTest, NothingComesWhereThereIsNoTexture) {
+  views_.ref.image = std::make_shared<const GrayImage>(
+      GrayImage{kWidth, kHeight, std::vector<uint8_t>(kWidth * kHeight, 128)});
+  Propagate();
+  EXPECT_EQ(num_asked_, 0u);
+}
+
+TEST_F(ViewPropagationTest, WithoutDepthMapsNothingComes) {
+  for (View& src : views_.srcs) src.inverse_depth = nullptr;
+  Propagate();
+  EXPECT_EQ(num_asked_, 0u);
+  EXPECT_EQ(ShareAt(1.5f), 1);
+}
+
+}  // namespace
+}  // namespace hpm
