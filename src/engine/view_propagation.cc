@@ -19,6 +19,7 @@ constexpr int kReach = 2;             // pixels, of a slope's differences
 constexpr float kMaxBend = 0.01f;     // of 1/z over the reach, relative
 constexpr float kMaxSlope = 0.05f;    // of 1/z per pixel, relative
 constexpr float kMinFacing = 0.1f;    // cosine between normal and ray
+constexpr float kMaxCost = 0.8f;      // where more, the images do not match
 constexpr float kMargin = 0.05f;      // of cost; ties say nothing
 
 // What a source found, as planes of the reference's camera frame.
@@ -209,24 +210,29 @@ const Proposal* BestProposal(const Proposal* of_pixel,
   return best != nullptr && best->count > least ? best : nullptr;
 }
 
-// Takes those of the planes that match better, by a margin, than what the
-// pixels have.
+// Takes those of the planes that match, and do so better than what the pixels
+// have.
 void TakeBetter(const ScorePlanes& score,
                 std::vector<PixelPlane>* proposed,
                 HypothesisMap* map) {
-  const size_t count = proposed->size();
-  if (count == 0) return;
-  const auto index = [&](const PixelPlane& pixel) {
-    return static_cast<size_t>(pixel.row) * map->width + pixel.col;
+  if (proposed->empty()) return;
+  const auto plane_of = [&](const PixelPlane& pixel) -> Plane& {
+    return map->planes[static_cast<size_t>(pixel.row) * map->width + pixel.col];
   };
-  for (size_t i = 0; i < count; ++i) {
-    const PixelPlane& pixel = (*proposed)[i];
-    proposed->push_back({pixel.col, pixel.row, map->planes[index(pixel)]});
-  }
   const std::vector<float> costs = score(*proposed);
-  for (size_t i = 0; i < count; ++i) {
-    if (costs[i] + kMargin < costs[count + i])
-      map->planes[index((*proposed)[i])] = (*proposed)[i].plane;
+  std::vector<size_t> matching;
+  std::vector<PixelPlane> own;
+  for (size_t i = 0; i < costs.size(); ++i) {
+    if (!(costs[i] < kMaxCost)) continue;
+    const PixelPlane& pixel = (*proposed)[i];
+    matching.push_back(i);
+    own.push_back({pixel.col, pixel.row, plane_of(pixel)});
+  }
+  const std::vector<float> own_costs = score(own);
+  for (size_t k = 0; k < own.size(); ++k) {
+    const size_t i = matching[k];
+    if (costs[i] + kMargin < own_costs[k])
+      plane_of(own[k]) = (*proposed)[i].plane;
   }
   proposed->clear();
 }

@@ -58,7 +58,8 @@ class ViewPropagationTest : public testing::Test {
                    static_cast<float>(at / kWidth));
   }
 
-  // The images match best on `matching_scale_` times the true depth.
+  // The images match best on `matching_scale_` times the true depth, where it
+  // costs `least_cost_`.
   void Propagate() {
     PropagateViews(
         views_,
@@ -73,7 +74,8 @@ class ViewPropagationTest : public testing::Test {
             const float best =
                 matching_scale_ *
                 TrueDepth(static_cast<size_t>(row) * kWidth + col);
-            costs.push_back(std::fabs(z - best));
+            costs.push_back(least_cost_ +
+                            relative_cost_ * std::fabs(z / best - 1));
           }
           num_asked_ += planes.size();
           return costs;
@@ -95,6 +97,8 @@ class ViewPropagationTest : public testing::Test {
   MethodParams params_;
   size_t num_asked_ = 0;
   float matching_scale_ = 1;
+  float least_cost_ = 0;
+  float relative_cost_ = 1;  // of being off, per relative depth
 };
 
 TEST_F(ViewPropagationTest, WhatTheSourcesFoundComesWithItsNormal) {
@@ -129,6 +133,26 @@ TEST_F(ViewPropagationTest, TheImagesDecide) {
   Propagate();
   EXPECT_GT(num_asked_, 0u);
   EXPECT_EQ(ShareAt(1.5f), 1);
+}
+
+TEST_F(ViewPropagationTest, WhatMatchesNowhereIsNotTaken) {
+  least_cost_ = 0.75f;
+  Propagate();
+  EXPECT_GT(ShareAt(1), 0.8);
+  SetMap(1.5f);
+  least_cost_ = 0.85f;
+  Propagate();
+  EXPECT_EQ(ShareAt(1.5f), 1);
+}
+
+TEST_F(ViewPropagationTest, ALittleBetterIsNotEnough) {
+  relative_cost_ = 0.09f;  // half of it for the map
+  Propagate();
+  EXPECT_GT(num_asked_, 0u);
+  EXPECT_EQ(ShareAt(1.5f), 1);
+  relative_cost_ = 0.11f;
+  Propagate();
+  EXPECT_GT(ShareAt(1), 0.8);
 }
 
 TEST_F(ViewPropagationTest, WhatAsManySourcesFoundStays) {
