@@ -150,13 +150,17 @@ struct Landing {
 };
 
 Landing LandingOf(const ViewSet& views,
+                  const WeakRegions& regions,
                   const FoundSurface& surface,
                   int col,
                   int row) {
   const Landing nowhere = {-1, 0};
   const Camera& ref = views.ref.camera;
   int ref_col, ref_row;
-  if (!surface.Land(col, row, &ref_col, &ref_row)) return nowhere;
+  if (!surface.Land(col, row, &ref_col, &ref_row) ||
+      regions.At(ref_col, ref_row) > 0) {
+    return nowhere;
+  }
   const float inverse_depth = AllowedInverseDepth(
       views,
       surface.PlaneAt(col, row),
@@ -168,6 +172,7 @@ Landing LandingOf(const ViewSet& views,
 // Rows of the source are worked out side by side and counted one after the
 // other, so that the result depends on no order of threads.
 void AddProposals(const ViewSet& views,
+                  const WeakRegions& regions,
                   const FoundSurface& surface,
                   uint8_t index,
                   std::vector<Proposal>* proposals) {
@@ -180,7 +185,7 @@ void AddProposals(const ViewSet& views,
     tbb::parallel_for(begin, end, [&](int row) {
       Landing* of_row = &landings[static_cast<size_t>(row - begin) * width];
       for (int col = 0; col < width; ++col)
-        of_row[col] = LandingOf(views, surface, col, row);
+        of_row[col] = LandingOf(views, regions, surface, col, row);
     });
     const int first_pixel = begin * width;
     for (int i = 0; i < (end - begin) * width; ++i) {
@@ -250,16 +255,17 @@ void PropagateViews(const ViewSet& views,
     if (src.inverse_depth != nullptr) surfaces.emplace_back(ref, src);
   }
   if (surfaces.empty()) return;
-  std::vector<Proposal> proposals(map->planes.size() * kMaxProposals);
-  for (size_t j = 0; j < surfaces.size(); ++j)
-    AddProposals(views, surfaces[j], static_cast<uint8_t>(j), &proposals);
-
   const WeakRegions regions = FindWeakRegions(
       *views.ref.image, params.weak_gradient, params.region_min_share);
+  std::vector<Proposal> proposals(map->planes.size() * kMaxProposals);
+  for (size_t j = 0; j < surfaces.size(); ++j) {
+    AddProposals(
+        views, regions, surfaces[j], static_cast<uint8_t>(j), &proposals);
+  }
+
   std::vector<PixelPlane> proposed;
   for (int row = 0; row < map->height; ++row) {
     for (int col = 0; col < map->width; ++col) {
-      if (regions.At(col, row) > 0) continue;
       const size_t at = static_cast<size_t>(row) * map->width + col;
       const float own = 1 / DepthAt(ref,
                                     map->planes[at],
