@@ -15,7 +15,7 @@ struct PatchShape {
   int offset[kPatchAxis];     // pixels, per axis
   float spatial[kPatchSize];  // exp(-|q - p| / (2 sigma_spatial^2)), row-major
   float color_falloff;        // 1 / (2 sigma_color^2), per grey level
-  float color_cut;            // 1 / (2 cut_color^2), per grey level squared
+  float cut_color;            // grey levels; 0: not cut
   // Reference pixels of value 0 show nothing (src/image/gaps.h).
   bool ref_has_gaps;
 };
@@ -23,11 +23,18 @@ struct PatchShape {
 // Weight of a sample whose grey value differs by `difference` >= 0 from the
 // centre's. ACMH's exponential has a long tail: one edge in the window
 // outweighs the faint shading of a plain wall and pulls the wall to the edge's
-// depth. The Gaussian cuts the tail.
-HPM_HD float ColorWeight(const PatchShape& shape, float difference) {
-  return expf(-difference * shape.color_falloff -
-              difference * difference * shape.color_cut);
+// depth. The Gaussian of cut_color cuts the tail; one half as wide again does
+// in a mixed window, whose texture all over would have little weight left.
+HPM_HD float ColorWeight(const PatchShape& shape,
+                         bool mixed,
+                         float difference) {
+  const float cut = mixed ? 1.5f * shape.cut_color : shape.cut_color;
+  const float off = cut > 0 ? difference / cut : 0;
+  return expf(-difference * shape.color_falloff - 0.5f * off * off);
 }
+
+// A window is mixed when less than a third of it is like its centre.
+constexpr int kMinLikeCentre = kPatchSize / 3;
 
 HPM_HD PatchShape MakePatchShape(int radius,
                                  float sigma_spatial,
@@ -50,7 +57,7 @@ HPM_HD PatchShape MakePatchShape(int radius,
   }
   shape.color_falloff = 1 / (2 * sigma_color * sigma_color);
   shape.ref_has_gaps = false;
-  shape.color_cut = cut_color > 0 ? 1 / (2 * cut_color * cut_color) : 0;
+  shape.cut_color = cut_color;
   return shape;
 }
 
@@ -66,7 +73,7 @@ struct RefPatch {
 };
 
 // `grey(col, row)` returns 0..255 and clamps at the border.
-// `color_weight(d)` returns ColorWeight(shape, d).
+// `color_weight(mixed, d)` returns ColorWeight(shape, mixed, d).
 template <class Grey, class ColorWeight>
 HPM_HD RefPatch MakeRefPatch(const PatchShape& shape,
                              const Grey& grey,
@@ -75,20 +82,27 @@ HPM_HD RefPatch MakeRefPatch(const PatchShape& shape,
                              int row) {
   RefPatch patch;
   patch.center = grey(col, row);
-  float sum = 0, sum_r = 0, sum_rr = 0;
+  float* relative = patch.weighted;  // at first
+  int num_like_centre = 0;
   for (int j = 0; j < kPatchAxis; ++j) {
     for (int i = 0; i < kPatchAxis; ++i) {
-      const int k = j * kPatchAxis + i;
-      const float value = grey(col + shape.offset[i], row + shape.offset[j]);
-      const float r = value - patch.center;
-      float w = shape.spatial[k] * color_weight(fabsf(r));
-      if (shape.ref_has_gaps && value == 0 && patch.center > 0) w = 0;
-      patch.weight[k] = w;
-      patch.weighted[k] = w * r;
-      sum += w;
-      sum_r += w * r;
-      sum_rr += w * r * r;
+      const float r =
+          grey(col + shape.offset[i], row + shape.offset[j]) - patch.center;
+      relative[j * kPatchAxis + i] = r;
+      num_like_centre += fabsf(r) < shape.cut_color;
     }
+  }
+  const bool mixed = num_like_centre < kMinLikeCentre;
+  float sum = 0, sum_r = 0, sum_rr = 0;
+  for (int k = 0; k < kPatchSize; ++k) {
+    const float r = relative[k];
+    float w = shape.spatial[k] * color_weight(mixed, fabsf(r));
+    if (shape.ref_has_gaps && r == -patch.center && patch.center > 0) w = 0;
+    patch.weight[k] = w;
+    patch.weighted[k] = w * r;
+    sum += w;
+    sum_r += w * r;
+    sum_rr += w * r * r;
   }
   const float inv_sum = 1.0f / sum;
   for (int k = 0; k < kPatchSize; ++k) {

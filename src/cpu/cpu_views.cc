@@ -39,8 +39,11 @@ CpuViews::CpuViews(const ViewSet& views, const MethodParams& params)
   match_.ref = views.ref.camera;
   match_.shape = ShapeOf(params);
   match_.shape.ref_has_gaps = ref.has_gaps;
-  for (int i = 0; i < 256; ++i) {
-    color_weights_[i] = ColorWeight(match_.shape, static_cast<float>(i));
+  for (const bool mixed : {false, true}) {
+    for (int i = 0; i < 256; ++i) {
+      color_weights_[mixed][i] =
+          ColorWeight(match_.shape, mixed, static_cast<float>(i));
+    }
   }
 
   size_t num_texels = 0;
@@ -87,8 +90,8 @@ RefPatch CpuViews::PatchAt(int col, int row) const {
         return static_cast<float>(
             origin[static_cast<ptrdiff_t>(r) * padded_width_ + c]);
       },
-      [&](float difference) {
-        return color_weights_[static_cast<int>(difference)];
+      [&](bool mixed, float difference) {
+        return color_weights_[mixed][static_cast<int>(difference)];
       },
       col,
       row);

@@ -34,7 +34,7 @@ class CpuViews {
   int padding_;  // of the reference image, on each side
   int padded_width_;
   std::vector<uint8_t> padded_ref_;
-  float color_weights_[256];
+  float color_weights_[2][256];  // of unmixed and of mixed windows
   std::vector<Texel, HugePageAllocator<Texel>> texels_;
   MatchViews match_;
   std::vector<DepthView> depth_views_;

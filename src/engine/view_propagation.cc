@@ -19,8 +19,8 @@ constexpr int kReach = 2;             // pixels, of a slope's differences
 constexpr float kMaxBend = 0.01f;     // of 1/z over the reach, relative
 constexpr float kMaxSlope = 0.05f;    // of 1/z per pixel, relative
 constexpr float kMinFacing = 0.1f;    // cosine between normal and ray
-constexpr float kMaxCost = 0.8f;      // where more, the images do not match
-constexpr float kMargin = 0.05f;      // of cost; ties say nothing
+constexpr float kMatches = 0.6f;  // cost; where more, the images do not match
+constexpr float kMargin = 0.05f;  // of cost; ties say nothing
 
 // What a source found, as planes of the reference's camera frame.
 class FoundSurface {
@@ -228,7 +228,7 @@ void TakeBetter(const ScorePlanes& score,
   std::vector<size_t> matching;
   std::vector<PixelPlane> own;
   for (size_t i = 0; i < costs.size(); ++i) {
-    if (!(costs[i] < kMaxCost)) continue;
+    if (!(costs[i] < kMatches)) continue;
     const PixelPlane& pixel = (*proposed)[i];
     matching.push_back(i);
     own.push_back({pixel.col, pixel.row, plane_of(pixel)});

@@ -28,7 +28,7 @@ struct DeviceProblem {
   PatchShape shape;
   SamplingPattern pattern;
   const uint8_t* ref_grey;     // row-major, no padding
-  const float* color_weights;  // 256: ColorWeight(shape, d)
+  const float* color_weights;  // 2 x 256: ColorWeight(shape, mixed, d)
   const ViewGeometry* views;
   const DepthView* depth_views;  // for the geometric term
   const Vec3f* src_centers;      // in the reference camera frame
@@ -50,8 +50,9 @@ HPM_HD RefPatch RefPatchAt(const DeviceProblem& problem, int col, int row) {
   return MakeRefPatch(
       problem.shape,
       [&](int c, int r) { return GreyAt(problem, c, r); },
-      [&](float difference) {
-        return problem.color_weights[static_cast<int>(difference)];
+      [&](bool mixed, float difference) {
+        const float* weights = problem.color_weights + (mixed ? 256 : 0);
+        return weights[static_cast<int>(difference)];
       },
       col,
       row);

@@ -13,9 +13,11 @@ ProblemTables MakeProblemTables(const ViewSet& views,
   tables.problem.params = tables.visit;
   tables.problem.shape = ShapeOf(params);
   tables.problem.shape.ref_has_gaps = views.ref.image->has_gaps;
-  for (int i = 0; i < 256; ++i) {
-    tables.color_weights.push_back(
-        ColorWeight(tables.problem.shape, static_cast<float>(i)));
+  for (const bool mixed : {false, true}) {
+    for (int i = 0; i < 256; ++i) {
+      tables.color_weights.push_back(
+          ColorWeight(tables.problem.shape, mixed, static_cast<float>(i)));
+    }
   }
   for (const View& src : views.srcs) {
     tables.depth_views.push_back(DepthViewOf(views.ref.camera, src));

@@ -31,7 +31,7 @@ struct DeviceCost {
         [&](int x, int y) {
           return static_cast<float>(v.ref_image[y * v.ref.width + x]);
         },
-        [&](float d) { return ColorWeight(v.shape, d); },
+        [&](bool mixed, float d) { return ColorWeight(v.shape, mixed, d); },
         c,
         r);
   }

@@ -34,7 +34,7 @@ RefPatch PatchOf(const PatchShape& shape,
       [&](int c, int r) {
         return grey(static_cast<float>(c), static_cast<float>(r));
       },
-      [&](float d) { return ColorWeight(shape, d); },
+      [&](bool mixed, float d) { return ColorWeight(shape, mixed, d); },
       col,
       row);
 }
@@ -55,6 +55,34 @@ TEST(MatchCost, WindowOfRadiusFiveHas36SamplesTwoPixelsApart) {
   EXPECT_FLOAT_EQ(shape.spatial[0], std::exp(-std::sqrt(50.0f) / 50));
   EXPECT_FLOAT_EQ(shape.spatial[2 * 6 + 3], std::exp(-std::sqrt(2.0f) / 50));
   EXPECT_FLOAT_EQ(shape.color_falloff, 1.0f / 18);
+}
+
+// The weight of the first sample that differs by 30, beside that of a sample
+// like the centre at the same distance.
+double WeightOfUnlike(int num_like) {
+  const PatchShape shape = DefaultShape();
+  const auto grey = [&](float u, float v) {
+    if (u == 30 && v == 20) return 100.0f;
+    const int i = static_cast<int>(u - 25) / 2,
+              j = static_cast<int>(v - 15) / 2;
+    return kPatchAxis * j + i < num_like ? 100.0f : 130.0f;
+  };
+  const RefPatch patch = PatchOf(shape, grey, 30, 20);
+  return patch.weight[kPatchSize - 1] / patch.weight[0];
+}
+
+TEST(MatchCost, WindowsMixedAllOverKeepMoreOfWhatIsUnlikeTheirCentre) {
+  const double tail = std::exp(-30.0 / 18);
+  EXPECT_NEAR(WeightOfUnlike(12), tail * std::exp(-0.5 * 2 * 2), 1e-5);
+  EXPECT_NEAR(WeightOfUnlike(35), tail * std::exp(-0.5 * 2 * 2), 1e-5);
+  const double off = 30 / 22.5;
+  EXPECT_NEAR(WeightOfUnlike(11), tail * std::exp(-0.5 * off * off), 1e-5);
+}
+
+TEST(MatchCost, WithoutACutThePapersWeightsHoldInAllWindows) {
+  const PatchShape shape = MakePatchShape(5, 5, 3, 0);
+  for (const bool mixed : {false, true})
+    EXPECT_FLOAT_EQ(ColorWeight(shape, mixed, 36), std::exp(-2.0f));
 }
 
 TEST(MatchCost, WindowReachesItsRadiusAndIsSymmetric) {
@@ -82,9 +110,10 @@ TEST(MatchCost, PatchHoldsWeightsMeanAndVarianceOfItsDefinition) {
       const double x = shape.offset[i], y = shape.offset[j];
       const double grey =
           Pattern(30 + static_cast<float>(x), 20 + static_cast<float>(y));
-      const double w = std::exp(-std::hypot(x, y) / 50 -
-                                std::abs(grey - Pattern(30, 20)) / 18 -
-                                std::pow(grey - Pattern(30, 20), 2) / 450);
+      // A mixed window.
+      const double w = std::exp(
+          -std::hypot(x, y) / 50 - std::abs(grey - Pattern(30, 20)) / 18 -
+          std::pow((grey - Pattern(30, 20)) / 22.5, 2) / 2);
       weights.push_back(w);
       sum += w;
       mean += w * grey;

@@ -40,17 +40,26 @@ double TextbookCost(
   const auto to_double = [](const Vec3f& v) {
     return Eigen::Vector3d(v.x, v.y, v.z);
   };
+  const auto grey_at = [&](int c, int r) -> double {
+    return ref.image->at(std::clamp(c, 0, ref.image->width - 1),
+                         std::clamp(r, 0, ref.image->height - 1));
+  };
+  int num_like = 0;
+  for (int dy = -5; dy <= 5; dy += 2) {
+    for (int dx = -5; dx <= 5; dx += 2)
+      num_like +=
+          std::abs(grey_at(col + dx, row + dy) - grey_at(col, row)) < 15;
+  }
+  const double cut = num_like < 12 ? 22.5 : 15;
   double sw = 0, sr = 0, ss = 0, srr = 0, sss = 0, srs = 0;
   for (int dy = -5; dy <= 5; dy += 2) {
     for (int dx = -5; dx <= 5; dx += 2) {
       const int c = col + dx, r = row + dy;
-      const double grey =
-          ref.image->at(std::clamp(c, 0, ref.image->width - 1),
-                        std::clamp(r, 0, ref.image->height - 1));
+      const double grey = grey_at(c, r);
       const double w =
           std::exp(-std::hypot(dx, dy) / 50 -
                    std::abs(grey - ref.image->at(col, row)) / 18.0 -
-                   std::pow(grey - ref.image->at(col, row), 2) / 450.0);
+                   std::pow((grey - ref.image->at(col, row)) / cut, 2) / 2);
       const Eigen::Vector3d ray((c - ref.camera.cx) / ref.camera.fx,
                                 (r - ref.camera.cy) / ref.camera.fy,
                                 1);

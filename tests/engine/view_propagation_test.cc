@@ -136,11 +136,11 @@ TEST_F(ViewPropagationTest, TheImagesDecide) {
 }
 
 TEST_F(ViewPropagationTest, WhatMatchesNowhereIsNotTaken) {
-  least_cost_ = 0.75f;
+  least_cost_ = 0.55f;
   Propagate();
   EXPECT_GT(ShareAt(1), 0.8);
   SetMap(1.5f);
-  least_cost_ = 0.85f;
+  least_cost_ = 0.65f;
   Propagate();
   EXPECT_EQ(ShareAt(1.5f), 1);
 }
