@@ -23,12 +23,12 @@ struct PatchShape {
 // Weight of a sample whose grey value differs by `difference` >= 0 from the
 // centre's. ACMH's exponential has a long tail: one edge in the window
 // outweighs the faint shading of a plain wall and pulls the wall to the edge's
-// depth. The Gaussian of cut_color cuts the tail; one half as wide again does
+// depth. The Gaussian of cut_color cuts the tail; one wider by a quarter does
 // in a mixed window, whose texture all over would have little weight left.
 HPM_HD float ColorWeight(const PatchShape& shape,
                          bool mixed,
                          float difference) {
-  const float cut = mixed ? 1.5f * shape.cut_color : shape.cut_color;
+  const float cut = mixed ? 1.25f * shape.cut_color : shape.cut_color;
   const float off = cut > 0 ? difference / cut : 0;
   return expf(-difference * shape.color_falloff - 0.5f * off * off);
 }

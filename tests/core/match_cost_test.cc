@@ -75,7 +75,7 @@ TEST(MatchCost, WindowsMixedAllOverKeepMoreOfWhatIsUnlikeTheirCentre) {
   const double tail = std::exp(-30.0 / 18);
   EXPECT_NEAR(WeightOfUnlike(12), tail * std::exp(-0.5 * 2 * 2), 1e-5);
   EXPECT_NEAR(WeightOfUnlike(35), tail * std::exp(-0.5 * 2 * 2), 1e-5);
-  const double off = 30 / 22.5;
+  const double off = 30 / 18.75;
   EXPECT_NEAR(WeightOfUnlike(11), tail * std::exp(-0.5 * off * off), 1e-5);
 }
 
@@ -113,7 +113,7 @@ TEST(MatchCost, PatchHoldsWeightsMeanAndVarianceOfItsDefinition) {
       // A mixed window.
       const double w = std::exp(
           -std::hypot(x, y) / 50 - std::abs(grey - Pattern(30, 20)) / 18 -
-          std::pow((grey - Pattern(30, 20)) / 22.5, 2) / 2);
+          std::pow((grey - Pattern(30, 20)) / 18.75, 2) / 2);
       weights.push_back(w);
       sum += w;
       mean += w * grey;

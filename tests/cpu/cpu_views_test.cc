@@ -50,7 +50,7 @@ double TextbookCost(
       num_like +=
           std::abs(grey_at(col + dx, row + dy) - grey_at(col, row)) < 15;
   }
-  const double cut = num_like < 12 ? 22.5 : 15;
+  const double cut = num_like < 12 ? 18.75 : 15;
   double sw = 0, sr = 0, ss = 0, srr = 0, sss = 0, srs = 0;
   for (int dy = -5; dy <= 5; dy += 2) {
     for (int dx = -5; dx <= 5; dx += 2) {
