@@ -9,6 +9,8 @@ namespace {
 constexpr double kStartWork = 0.15;
 // From scenes with few plain surfaces to one that has many, 0.13 to 0.6.
 constexpr double kMiningWork = 0.3;
+// A sixth of a geometric pass.
+constexpr double kPropagationWork = 0.06;
 // Fewer regions, fewer views, no hypotheses from the whole range; but the
 // sources' depths are looked at, too.
 constexpr double kFewViewsIteration = 0.5;
@@ -20,7 +22,8 @@ double JudgeWork(const StageSpec& stage) {
 }
 
 double PriorWork(const Pass& pass) {
-  return pass.regions != RegionPriors::kNone ? kMiningWork : 0;
+  return (pass.regions != RegionPriors::kNone ? kMiningWork : 0) +
+         (pass.propagate_views ? kPropagationWork : 0);
 }
 
 double StepsWork(const Pass& pass, int num_steps) {
