@@ -82,27 +82,28 @@ HPM_HD RefPatch MakeRefPatch(const PatchShape& shape,
                              int row) {
   RefPatch patch;
   patch.center = grey(col, row);
-  float* relative = patch.weighted;  // at first
+  const auto relative = [&](int i, int j) {
+    return grey(col + shape.offset[i], row + shape.offset[j]) - patch.center;
+  };
   int num_like_centre = 0;
   for (int j = 0; j < kPatchAxis; ++j) {
-    for (int i = 0; i < kPatchAxis; ++i) {
-      const float r =
-          grey(col + shape.offset[i], row + shape.offset[j]) - patch.center;
-      relative[j * kPatchAxis + i] = r;
-      num_like_centre += fabsf(r) < shape.cut_color;
-    }
+    for (int i = 0; i < kPatchAxis; ++i)
+      num_like_centre += fabsf(relative(i, j)) < shape.cut_color;
   }
   const bool mixed = num_like_centre < kMinLikeCentre;
   float sum = 0, sum_r = 0, sum_rr = 0;
-  for (int k = 0; k < kPatchSize; ++k) {
-    const float r = relative[k];
-    float w = shape.spatial[k] * color_weight(mixed, fabsf(r));
-    if (shape.ref_has_gaps && r == -patch.center && patch.center > 0) w = 0;
-    patch.weight[k] = w;
-    patch.weighted[k] = w * r;
-    sum += w;
-    sum_r += w * r;
-    sum_rr += w * r * r;
+  for (int j = 0; j < kPatchAxis; ++j) {
+    for (int i = 0; i < kPatchAxis; ++i) {
+      const int k = j * kPatchAxis + i;
+      const float r = relative(i, j);
+      float w = shape.spatial[k] * color_weight(mixed, fabsf(r));
+      if (shape.ref_has_gaps && r == -patch.center && patch.center > 0) w = 0;
+      patch.weight[k] = w;
+      patch.weighted[k] = w * r;
+      sum += w;
+      sum_r += w * r;
+      sum_rr += w * r * r;
+    }
   }
   const float inv_sum = 1.0f / sum;
   for (int k = 0; k < kPatchSize; ++k) {
