@@ -33,9 +33,6 @@ HPM_HD float ColorWeight(const PatchShape& shape,
   return expf(-difference * shape.color_falloff - 0.5f * off * off);
 }
 
-// A window is mixed when less than a third of it is like its centre.
-constexpr int kMinLikeCentre = kPatchSize / 3;
-
 HPM_HD PatchShape MakePatchShape(int radius,
                                  float sigma_spatial,
                                  float sigma_color,
@@ -82,22 +79,29 @@ HPM_HD RefPatch MakeRefPatch(const PatchShape& shape,
                              int row) {
   RefPatch patch;
   patch.center = grey(col, row);
-  const auto relative = [&](int i, int j) {
-    return grey(col + shape.offset[i], row + shape.offset[j]) - patch.center;
+  const auto shows_nothing = [&](float value) {
+    return shape.ref_has_gaps && value == 0 && patch.center > 0;
   };
-  int num_like_centre = 0;
+  // A window is mixed when less than a third of what it shows is closer to its
+  // centre than cut_color.
+  int num_shown = 0, num_close = 0;
   for (int j = 0; j < kPatchAxis; ++j) {
-    for (int i = 0; i < kPatchAxis; ++i)
-      num_like_centre += fabsf(relative(i, j)) < shape.cut_color;
+    for (int i = 0; i < kPatchAxis; ++i) {
+      const float value = grey(col + shape.offset[i], row + shape.offset[j]);
+      if (shows_nothing(value)) continue;
+      ++num_shown;
+      num_close += fabsf(value - patch.center) < shape.cut_color;
+    }
   }
-  const bool mixed = num_like_centre < kMinLikeCentre;
+  const bool mixed = 3 * num_close < num_shown;
   float sum = 0, sum_r = 0, sum_rr = 0;
   for (int j = 0; j < kPatchAxis; ++j) {
     for (int i = 0; i < kPatchAxis; ++i) {
       const int k = j * kPatchAxis + i;
-      const float r = relative(i, j);
+      const float value = grey(col + shape.offset[i], row + shape.offset[j]);
+      const float r = value - patch.center;
       float w = shape.spatial[k] * color_weight(mixed, fabsf(r));
-      if (shape.ref_has_gaps && r == -patch.center && patch.center > 0) w = 0;
+      if (shows_nothing(value)) w = 0;
       patch.weight[k] = w;
       patch.weighted[k] = w * r;
       sum += w;

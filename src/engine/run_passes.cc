@@ -136,7 +136,7 @@ void RunPasses(Backend* backend,
     };
     if (pass.propagate_views) {
       PhaseTimer timer(times, "propagate views");
-      PropagateViews(views, params, score, map);
+      PropagateViews(views, params, score, control.cancel, map);
     }
     if (pass.regions != RegionPriors::kNone) {
       PhaseTimer timer(times, "build prior");

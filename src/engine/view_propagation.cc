@@ -1,5 +1,6 @@
 #include "src/engine/view_propagation.h"
 
+#include "src/base/large_vectors.h"
 #include "src/engine/backend.h"
 #include "src/engine/source_geometry.h"
 #include "src/prior/weak_regions.h"
@@ -19,8 +20,9 @@ constexpr int kReach = 2;             // pixels, of a slope's differences
 constexpr float kMaxBend = 0.01f;     // of 1/z over the reach, relative
 constexpr float kMaxSlope = 0.05f;    // of 1/z per pixel, relative
 constexpr float kMinFacing = 0.1f;    // cosine between normal and ray
-constexpr float kMatches = 0.6f;  // cost; where more, the images do not match
-constexpr float kMargin = 0.05f;  // of cost; ties say nothing
+// Of the mean cost of a plane's best views.
+constexpr float kMatches = 0.6f;  // where more, the images do not match
+constexpr float kMargin = 0.05f;  // ties say nothing
 
 // What a source found, as planes of the reference's camera frame.
 class FoundSurface {
@@ -98,37 +100,69 @@ class FoundSurface {
   Vec3f ref_center_;  // in the source's frame
 };
 
-// A depth at a pixel of the reference, and who found it.
-struct Proposal {
-  float inverse_depth;
-  int32_t pixel;  // of the first one that found it
-  uint8_t first;  // index of a surface
-  uint8_t last;
-  uint8_t count;  // of surfaces; 0: no proposal
+// How many sources say the same of a pixel.
+struct Support {
+  uint16_t first : 5;  // who said it first, an index of a surface
+  uint16_t last : 5;
+  uint16_t count : 6;  // 0: nobody
+};
+static_assert(kMaxViews <= 32);
+
+void Count(int source, Support* support) {
+  if (support->count > 0 && support->last == source) return;
+  if (support->count == 0) support->first = source & 31;
+  support->last = source & 31;
+  ++support->count;
+}
+
+// Depths other than a pixel's own that sources propose there.
+struct Proposals {
+  static constexpr int kMax = 2;
+  float inverse_depth[kMax];
+  int32_t pixel[kMax];  // of the source that was first
+  Support support[kMax];
 };
 
-// They take no more memory than is planned beside a HypothesisMap.
-constexpr int kMaxProposals = 2;
-static_assert(2 * kMaxProposals * sizeof(Proposal) <= kEngineBytesPerPixel);
+// What sources say of the pixels of the reference.
+struct Votes {
+  explicit Votes(size_t num_pixels)
+      : own(Filled(num_pixels, Support{})),
+        others(Filled(num_pixels, Proposals{})) {}
+
+  std::vector<Support> own;  // of the planes that the pixels have
+  std::vector<Proposals> others;
+};
+
+// Beside them there is a label of a region; all this fits into what is planned
+// for a second HypothesisMap.
+static_assert(2 * (sizeof(Support) + sizeof(Proposals) + sizeof(uint16_t)) <=
+              kEngineBytesPerPixel);
 
 bool SameDepth(float inverse_depth, float other) {
   return std::fabs(inverse_depth - other) < kSameDepth * other;
 }
 
-// Counts the surface for what it says of a pixel; those that come first keep
-// the places.
-void Propose(const Proposal& proposal, Proposal* of_pixel) {
-  for (int k = 0; k < kMaxProposals; ++k) {
-    Proposal& place = of_pixel[k];
-    if (place.count == 0) {
-      place = proposal;
+// Gives the depth a place if there is one: one of which a single source speaks
+// makes room.
+void Propose(float inverse_depth,
+             int32_t pixel,
+             int source,
+             Proposals* proposals) {
+  int place = 0;
+  for (int k = 0; k < Proposals::kMax; ++k) {
+    Support* support = &proposals->support[k];
+    if (support->count > 0 &&
+        SameDepth(proposals->inverse_depth[k], inverse_depth)) {
+      Count(source, support);
       return;
     }
-    if (!SameDepth(place.inverse_depth, proposal.inverse_depth)) continue;
-    if (place.last != proposal.last) ++place.count;
-    place.last = proposal.last;
-    return;
+    if (support->count < proposals->support[place].count) place = k;
   }
+  if (proposals->support[place].count > 1) return;
+  proposals->inverse_depth[place] = inverse_depth;
+  proposals->pixel[place] = pixel;
+  proposals->support[place] = {};
+  Count(source, &proposals->support[place]);
 }
 
 // 1/z of a plane on the ray of a pixel; 0 where it is not allowed there.
@@ -146,73 +180,81 @@ float AllowedInverseDepth(const ViewSet& views,
 // Where a pixel of a source lies in the reference; at < 0: nowhere.
 struct Landing {
   ptrdiff_t at;
-  float inverse_depth;
+  float inverse_depth;  // of the source's plane there
+  bool agrees;          // with the plane that the pixel has
 };
 
 Landing LandingOf(const ViewSet& views,
                   const WeakRegions& regions,
+                  const HypothesisMap& map,
                   const FoundSurface& surface,
                   int col,
                   int row) {
-  const Landing nowhere = {-1, 0};
+  const Landing nowhere = {-1, 0, false};
   const Camera& ref = views.ref.camera;
   int ref_col, ref_row;
   if (!surface.Land(col, row, &ref_col, &ref_row) ||
       regions.At(ref_col, ref_row) > 0) {
     return nowhere;
   }
-  const float inverse_depth = AllowedInverseDepth(
-      views,
-      surface.PlaneAt(col, row),
-      RayAt(ref, static_cast<float>(ref_col), static_cast<float>(ref_row)));
+  const Vec3f ray =
+      RayAt(ref, static_cast<float>(ref_col), static_cast<float>(ref_row));
+  const float inverse_depth =
+      AllowedInverseDepth(views, surface.PlaneAt(col, row), ray);
   if (!(inverse_depth > 0)) return nowhere;
-  return {static_cast<ptrdiff_t>(ref_row) * ref.width + ref_col, inverse_depth};
+  const auto at = static_cast<ptrdiff_t>(ref_row) * ref.width + ref_col;
+  const float own = 1 / DepthOnRay(map.planes[at], ray);
+  return {at, inverse_depth, SameDepth(inverse_depth, own)};
 }
 
 // Rows of the source are worked out side by side and counted one after the
 // other, so that the result depends on no order of threads.
-void AddProposals(const ViewSet& views,
-                  const WeakRegions& regions,
-                  const FoundSurface& surface,
-                  uint8_t index,
-                  std::vector<Proposal>* proposals) {
+void CountVotes(const ViewSet& views,
+                const WeakRegions& regions,
+                const HypothesisMap& map,
+                const FoundSurface& surface,
+                int source,
+                const CancelToken* cancel,
+                Votes* votes) {
   constexpr int kRowsAtOnce = 64;
   const int width = surface.camera().width;
   const int height = surface.camera().height;
   std::vector<Landing> landings(static_cast<size_t>(width) * kRowsAtOnce);
   for (int begin = 0; begin < height; begin += kRowsAtOnce) {
+    if (cancel != nullptr) cancel->ThrowIfCancelled();
     const int end = std::min(height, begin + kRowsAtOnce);
     tbb::parallel_for(begin, end, [&](int row) {
       Landing* of_row = &landings[static_cast<size_t>(row - begin) * width];
       for (int col = 0; col < width; ++col)
-        of_row[col] = LandingOf(views, regions, surface, col, row);
+        of_row[col] = LandingOf(views, regions, map, surface, col, row);
     });
     const int first_pixel = begin * width;
     for (int i = 0; i < (end - begin) * width; ++i) {
       const Landing& landing = landings[i];
       if (landing.at < 0) continue;
-      Propose({landing.inverse_depth, first_pixel + i, index, index, 1},
-              &(*proposals)[landing.at * kMaxProposals]);
+      if (landing.agrees) {
+        Count(source, &votes->own[landing.at]);
+      } else {
+        Propose(landing.inverse_depth,
+                first_pixel + i,
+                source,
+                &votes->others[landing.at]);
+      }
     }
   }
 }
 
-// What most surfaces propose, where more propose it than the pixel's own plane;
-// null if there is nothing.
-const Proposal* BestProposal(const Proposal* of_pixel,
-                             float own_inverse_depth) {
-  const Proposal* best = nullptr;
-  int least = 0;
-  for (int k = 0; k < kMaxProposals; ++k) {
-    const Proposal& proposal = of_pixel[k];
-    if (proposal.count > 0 &&
-        SameDepth(proposal.inverse_depth, own_inverse_depth)) {
-      least += proposal.count;
-    } else if (proposal.count > (best != nullptr ? best->count : 0)) {
-      best = &proposal;
-    }
+// Index of the depth that most sources propose, where more propose it than
+// agree with the pixel's own plane; negative if there is none.
+int BestProposal(const Support& own, const Proposals& others) {
+  int best = -1;
+  int most = own.count;
+  for (int k = 0; k < Proposals::kMax; ++k) {
+    if (others.support[k].count <= most) continue;
+    most = others.support[k].count;
+    best = k;
   }
-  return best != nullptr && best->count > least ? best : nullptr;
+  return best;
 }
 
 // Takes those of the planes that match, and do so better than what the pixels
@@ -247,38 +289,35 @@ void TakeBetter(const ScorePlanes& score,
 void PropagateViews(const ViewSet& views,
                     const MethodParams& params,
                     const ScorePlanes& score,
+                    const CancelToken* cancel,
                     HypothesisMap* map) {
   constexpr size_t kAskedAtOnce = 1 << 16;
-  const Camera& ref = views.ref.camera;
   std::vector<FoundSurface> surfaces;
   for (const View& src : views.srcs) {
-    if (src.inverse_depth != nullptr) surfaces.emplace_back(ref, src);
+    if (src.inverse_depth != nullptr)
+      surfaces.emplace_back(views.ref.camera, src);
   }
   if (surfaces.empty()) return;
   const WeakRegions regions = FindWeakRegions(
       *views.ref.image, params.weak_gradient, params.region_min_share);
-  std::vector<Proposal> proposals(map->planes.size() * kMaxProposals);
+  Votes votes(map->planes.size());
   for (size_t j = 0; j < surfaces.size(); ++j) {
-    AddProposals(
-        views, regions, surfaces[j], static_cast<uint8_t>(j), &proposals);
+    CountVotes(
+        views, regions, *map, surfaces[j], static_cast<int>(j), cancel, &votes);
   }
 
   std::vector<PixelPlane> proposed;
   for (int row = 0; row < map->height; ++row) {
     for (int col = 0; col < map->width; ++col) {
       const size_t at = static_cast<size_t>(row) * map->width + col;
-      const float own = 1 / DepthAt(ref,
-                                    map->planes[at],
-                                    static_cast<float>(col),
-                                    static_cast<float>(row));
-      const Proposal* best = BestProposal(&proposals[at * kMaxProposals], own);
-      if (best == nullptr) continue;
-      const FoundSurface& surface = surfaces[best->first];
+      const Proposals& others = votes.others[at];
+      const int best = BestProposal(votes.own[at], others);
+      if (best < 0) continue;
+      const FoundSurface& surface = surfaces[others.support[best].first];
       const int width = surface.camera().width;
+      const int pixel = others.pixel[best];
       proposed.push_back(
-          {col,
-           row,
-           surface.PlaneAt(best->pixel % width, best->pixel / width)});
+          {col, row, surface.PlaneAt(pixel % width, pixel / width)});
       if (proposed.size() == kAskedAtOnce) TakeBetter(score, &proposed, map);
     }
   }

@@ -79,6 +79,24 @@ TEST(MatchCost, WindowsMixedAllOverKeepMoreOfWhatIsUnlikeTheirCentre) {
   EXPECT_NEAR(WeightOfUnlike(11), tail * std::exp(-0.5 * off * off), 1e-5);
 }
 
+TEST(MatchCost, WhatAMaskHidesMakesNoWindowMixed) {
+  PatchShape shape = DefaultShape();
+  shape.ref_has_gaps = true;
+  // The mask hides all but two rows, one of which is like the centre.
+  const auto grey = [](float, float v) {
+    return v >= 25 ? 130.0f : (v >= 19 && v < 24 ? 100.0f : 0.0f);
+  };
+  const RefPatch patch = PatchOf(shape, grey, 30, 20);
+  EXPECT_EQ(patch.weight[0], 0);
+  const int unlike = kPatchSize - 1;
+  const double weight =
+      shape.spatial[unlike] * std::exp(-30.0 / 18 - 0.5 * 2 * 2);
+  const int like = unlike - kPatchAxis;
+  EXPECT_NEAR(patch.weight[unlike] / patch.weight[like],
+              weight / shape.spatial[like],
+              1e-5);
+}
+
 TEST(MatchCost, WithoutACutThePapersWeightsHoldInAllWindows) {
   const PatchShape shape = MakePatchShape(5, 5, 3, 0);
   for (const bool mixed : {false, true})

@@ -46,6 +46,13 @@ class ScriptedBackend : public StillBackend {
     }
     map->Touch();
   }
+  std::vector<float> Score(const std::vector<PixelPlane>& planes,
+                           const RunControl&) override {
+    std::vector<float> costs;
+    for (const PixelPlane& pixel : planes)
+      costs.push_back(pixel.plane.distance > 4.5f ? 0.1f : 0.4f);
+    return costs;
+  }
 
   std::vector<Seen> seen;
   std::vector<float> costs_of_rows = std::vector<float>(kHeight, 0.01f);
@@ -150,6 +157,32 @@ TEST(RunPasses, WhatALevelKeepsOfTheCoarserOne) {
       EXPECT_EQ(map.costs[at], depth == kFineDepth ? c.own_cost : kCoarseCost);
     }
   }
+}
+
+TEST(RunPasses, AGeometricPassStartsFromWhatASourceFound) {
+  ViewSet views = HalfTextured();
+  views.srcs[0].inverse_depth =
+      std::make_shared<const InverseDepthMap>(InverseDepthMap::Of(
+          std::vector<float>(kWidth * kHeight, 1 / kFineDepth)));
+  const Schedule schedule = MakeSchedule({kDefaultMethod});
+  const StageSpec& stage = schedule.stages.back();
+  ASSERT_TRUE(stage.geometric);
+  ScriptedBackend backend(false);
+  HypothesisMap map = CoarseMap();
+  const CancelToken cancel;
+  PhaseTimes times;
+  RunPasses(&backend,
+            views,
+            schedule,
+            stage,
+            DefaultParams(FindMethod(kDefaultMethod)),
+            {&cancel, nullptr},
+            &map,
+            &times);
+  ASSERT_FALSE(backend.seen.empty());
+  const std::vector<Plane>& given = backend.seen[0].planes;
+  EXPECT_NEAR(given[10 * kWidth + kTextured].distance, kFineDepth, 1e-3);
+  EXPECT_EQ(given[10 * kWidth + kPlain].distance, kCoarseDepth);
 }
 
 // ACMM's detail restoration: nothing is forgotten, the coarse level wins but

@@ -27,8 +27,7 @@ class ViewPropagationTest : public testing::Test {
     SetMap(1.5f);
   }
 
-  // The truth times `scale` in source view j, or in the reference, which
-  // thinks that it faces the plane.
+  // What source view j found: the truth times `scale`.
   void SetDepth(size_t j, float scale) {
     std::vector<float> inverse;
     for (const float z : rendered_[j + 1].truth.depth)
@@ -36,6 +35,8 @@ class ViewPropagationTest : public testing::Test {
     views_.srcs[j].inverse_depth =
         std::make_shared<const InverseDepthMap>(InverseDepthMap::Of(inverse));
   }
+  // What the reference has: depths of the truth times `scale`, normals that
+  // face the camera.
   void SetMap(float scale) {
     for (int row = 0; row < kHeight; ++row) {
       for (int col = 0; col < kWidth; ++col) {
@@ -80,6 +81,7 @@ class ViewPropagationTest : public testing::Test {
           num_asked_ += planes.size();
           return costs;
         },
+        cancel_,
         &map_);
   }
 
@@ -95,6 +97,7 @@ class ViewPropagationTest : public testing::Test {
   ViewSet views_;
   HypothesisMap map_;
   MethodParams params_;
+  const CancelToken* cancel_ = nullptr;
   size_t num_asked_ = 0;
   float matching_scale_ = 1;
   float least_cost_ = 0;
@@ -155,11 +158,43 @@ TEST_F(ViewPropagationTest, ALittleBetterIsNotEnough) {
   EXPECT_GT(ShareAt(1), 0.8);
 }
 
-TEST_F(ViewPropagationTest, WhatAsManySourcesFoundStays) {
+TEST_F(ViewPropagationTest, WhatAllSourcesFoundStays) {
   SetMap(1);
   Propagate();
   EXPECT_EQ(num_asked_, 0u);
   EXPECT_EQ(ShareAt(1), 1);
+}
+
+TEST_F(ViewPropagationTest, WhatAsManySourcesFoundStays) {
+  views_.srcs[2].inverse_depth = nullptr;
+  SetDepth(1, 1.2f);
+  SetMap(1);  // as source 0 says
+  matching_scale_ = 1.2f;
+  Propagate();
+  EXPECT_LT(num_asked_, 0.3 * kWidth * kHeight);  // what one of them sees alone
+  EXPECT_GT(ShareAt(1), 0.7);
+}
+
+TEST_F(ViewPropagationTest, LoneVoicesThatComeFirstDoNotSilenceTheOthers) {
+  const View agreeing = views_.srcs[2];
+  for (int copies = 0; copies < 2; ++copies) views_.srcs.push_back(agreeing);
+  SetDepth(0, 1.2f);
+  SetDepth(1, 1.8f);
+  Propagate();
+  EXPECT_GT(ShareAt(1), 0.6);
+
+  SetMap(1);
+  num_asked_ = 0;
+  Propagate();
+  EXPECT_LT(num_asked_, 0.3 * kWidth * kHeight);  // what the three do not see
+}
+
+TEST_F(ViewPropagationTest, StopsWhenCancelled) {
+  CancelToken cancel;
+  cancel.Cancel();
+  cancel_ = &cancel;
+  EXPECT_THROW(Propagate(), Error);
+  EXPECT_EQ(ShareAt(1.5f), 1);
 }
 
 TEST_F(ViewPropagationTest, NothingComesFromOutsideTheDepthRange) {
