@@ -34,6 +34,7 @@ Words AnotherValue(const OptionSpec& option) {
        {"7", "--PatchMatchStereo.depth_min", "4"}},
       {"PatchMatchStereo.min_triangulation_angle", {"25"}},
       {"PatchMatchStereo.gpu_index", {"1"}},
+      {"PatchMatchStereo.filter_min_ncc", {"0.95"}},
       {"PatchMatchStereo.filter_min_triangulation_angle", {"25"}},
       {"PatchMatchStereo.filter_min_num_consistent", {"1"}},
       {"PatchMatchStereo.filter_geom_consistency_max_cost", {"0.05"}},
