@@ -1,6 +1,6 @@
 #include "src/engine/mine_regions.h"
 
-#include "tests/cpu/scene_views.h"
+#include "tests/engine/plane_in_views.h"
 
 #include <cmath>
 
@@ -10,47 +10,17 @@
 namespace hpm {
 namespace {
 
-constexpr int kWidth = 96;
-constexpr int kHeight = 72;
-
-// A plane seen by four views, without any texture: one region.
-class MineRegionsTest : public testing::Test {
+// Without any texture: one region.
+class MineRegionsTest : public PlaneInViews {
  protected:
-  MineRegionsTest() : map_(kWidth, kHeight) {
-    SceneOptions options;
-    options.num_views = 4;
-    options.width = kWidth;
-    options.height = kHeight;
-    rendered_ = RenderViews(MakeScene("tilted_plane", options), 1);
-    views_ = AsViewSet(rendered_);
+  MineRegionsTest() {
     views_.ref.image = std::make_shared<const GrayImage>(GrayImage{
         kWidth, kHeight, std::vector<uint8_t>(kWidth * kHeight, 128)});
-    for (size_t j = 0; j < views_.srcs.size(); ++j) SetDepth(j, 1);
     SetMap(1);
   }
 
-  // The truth times `scale` in source view j, or in the reference.
-  void SetDepth(size_t j, float scale) {
-    std::vector<float> inverse;
-    for (const float z : rendered_[j + 1].truth.depth)
-      inverse.push_back(1 / (scale * z));
-    views_.srcs[j].inverse_depth =
-        std::make_shared<const InverseDepthMap>(InverseDepthMap::Of(inverse));
-  }
-  void SetMap(float scale) {
-    for (int row = 0; row < kHeight; ++row) {
-      for (int col = 0; col < kWidth; ++col) {
-        const size_t at = static_cast<size_t>(row) * kWidth + col;
-        map_.planes[at] = PlaneFromDepth(views_.ref.camera,
-                                         static_cast<float>(col),
-                                         static_cast<float>(row),
-                                         scale * TrueDepth(at),
-                                         rendered_[0].truth.normals[at]);
-      }
-    }
-  }
+  void SetMap(float scale) { PlaneInViews::SetMap(scale, TrueNormals()); }
 
-  float TrueDepth(size_t at) const { return rendered_[0].truth.depth[at]; }
   // As if the images matched `costs_` worse for each unit of 1/z beside the
   // depth that is `matching_scale_` times the true one.
   std::vector<float> Score(const std::vector<PixelPlane>& planes) {
@@ -95,9 +65,6 @@ class MineRegionsTest : public testing::Test {
     return sum / (kWidth * kHeight);
   }
 
-  std::vector<RenderedView> rendered_;
-  ViewSet views_;
-  HypothesisMap map_;
   MethodParams params_;
   std::vector<Plane> scored_;
   float slope_ = 0;  // the images say nothing

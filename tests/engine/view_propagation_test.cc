@@ -1,6 +1,6 @@
 #include "src/engine/view_propagation.h"
 
-#include "tests/cpu/scene_views.h"
+#include "tests/engine/plane_in_views.h"
 
 #include <cmath>
 
@@ -9,48 +9,16 @@
 namespace hpm {
 namespace {
 
-constexpr int kWidth = 96;
-constexpr int kHeight = 72;
-
-// A tilted plane in four images. The sources know where it is, the reference
-// has something else.
-class ViewPropagationTest : public testing::Test {
+// The sources know where the plane is, the reference has something else.
+class ViewPropagationTest : public PlaneInViews {
  protected:
-  ViewPropagationTest() : map_(kWidth, kHeight) {
-    SceneOptions options;
-    options.num_views = 4;
-    options.width = kWidth;
-    options.height = kHeight;
-    rendered_ = RenderViews(MakeScene("tilted_plane", options), 1);
-    views_ = AsViewSet(rendered_);
-    for (size_t j = 0; j < views_.srcs.size(); ++j) SetDepth(j, 1);
-    SetMap(1.5f);
-  }
+  ViewPropagationTest() { SetMap(1.5f); }
 
-  // What source view j found: the truth times `scale`.
-  void SetDepth(size_t j, float scale) {
-    std::vector<float> inverse;
-    for (const float z : rendered_[j + 1].truth.depth)
-      inverse.push_back(1 / (scale * z));
-    views_.srcs[j].inverse_depth =
-        std::make_shared<const InverseDepthMap>(InverseDepthMap::Of(inverse));
-  }
-  // What the reference has: depths of the truth times `scale`, normals that
-  // face the camera.
+  // Planes that face the camera.
   void SetMap(float scale) {
-    for (int row = 0; row < kHeight; ++row) {
-      for (int col = 0; col < kWidth; ++col) {
-        const size_t at = static_cast<size_t>(row) * kWidth + col;
-        map_.planes[at] = PlaneFromDepth(views_.ref.camera,
-                                         static_cast<float>(col),
-                                         static_cast<float>(row),
-                                         scale * TrueDepth(at),
-                                         {0, 0, -1});
-      }
-    }
+    PlaneInViews::SetMap(scale,
+                         std::vector<Vec3f>(map_.planes.size(), {0, 0, -1}));
   }
-
-  float TrueDepth(size_t at) const { return rendered_[0].truth.depth[at]; }
 
   float DepthOf(size_t at) const {
     return DepthAt(views_.ref.camera,
@@ -93,9 +61,6 @@ class ViewPropagationTest : public testing::Test {
     return count / static_cast<double>(map_.planes.size());
   }
 
-  std::vector<RenderedView> rendered_;
-  ViewSet views_;
-  HypothesisMap map_;
   MethodParams params_;
   const CancelToken* cancel_ = nullptr;
   size_t num_asked_ = 0;
@@ -112,8 +77,7 @@ TEST_F(ViewPropagationTest, WhatTheSourcesFoundComesWithItsNormal) {
   for (size_t at = 0; at < map_.planes.size(); ++at) {
     if (map_.planes[at].normal.z == -1) continue;
     ++num_taken;
-    EXPECT_GT(Dot(map_.planes[at].normal, rendered_[0].truth.normals[at]),
-              std::cos(0.02f));
+    EXPECT_GT(Dot(map_.planes[at].normal, TrueNormals()[at]), std::cos(0.02f));
   }
   EXPECT_GT(num_taken, 0.8 * kWidth * kHeight);
 }
