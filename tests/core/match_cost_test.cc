@@ -84,7 +84,7 @@ TEST(MatchCost, WhatAMaskHidesMakesNoWindowMixed) {
   shape.ref_has_gaps = true;
   // The mask hides all but two rows, one of which is like the centre.
   const auto grey = [](float, float v) {
-    return v >= 25 ? 130.0f : (v >= 19 && v < 24 ? 100.0f : 0.0f);
+    return v >= 25 ? 130.0f : (v == 20 || v == 23 ? 100.0f : 0.0f);
   };
   const RefPatch patch = PatchOf(shape, grey, 30, 20);
   EXPECT_EQ(patch.weight[0], 0);

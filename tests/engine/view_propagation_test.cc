@@ -44,7 +44,8 @@ class ViewPropagationTest : public PlaneInViews {
                 matching_scale_ *
                 TrueDepth(static_cast<size_t>(row) * kWidth + col);
             costs.push_back(least_cost_ +
-                            relative_cost_ * std::fabs(z / best - 1));
+                            relative_cost_ * std::fabs(z / best - 1) +
+                            (plane.normal.z == -1 ? kept_cost_ : 0));
           }
           num_asked_ += planes.size();
           return costs;
@@ -66,6 +67,7 @@ class ViewPropagationTest : public PlaneInViews {
   size_t num_asked_ = 0;
   float matching_scale_ = 1;
   float least_cost_ = 0;
+  float kept_cost_ = 0;      // more, of planes that face the camera
   float relative_cost_ = 1;  // of being off, per relative depth
 };
 
@@ -151,6 +153,23 @@ TEST_F(ViewPropagationTest, LoneVoicesThatComeFirstDoNotSilenceTheOthers) {
   num_asked_ = 0;
   Propagate();
   EXPECT_LT(num_asked_, 0.3 * kWidth * kHeight);  // what the three do not see
+}
+
+TEST_F(ViewPropagationTest, NoSlopeIsTakenAcrossADepthEdge) {
+  for (size_t j = 0; j < views_.srcs.size(); ++j) {
+    std::vector<float> inverse;
+    for (const float z : rendered_[j + 1].truth.depth)
+      inverse.push_back((inverse.size() % kWidth < kWidth / 2 ? 1 : 0.9f) / z);
+    views_.srcs[j].inverse_depth =
+        std::make_shared<const InverseDepthMap>(InverseDepthMap::Of(inverse));
+  }
+  relative_cost_ = 0.09f;  // they all match
+  kept_cost_ = 0.5f;
+  Propagate();
+  for (size_t at = 0; at < map_.planes.size(); ++at) {
+    if (map_.planes[at].normal.z == -1) continue;
+    EXPECT_GT(Dot(map_.planes[at].normal, TrueNormals()[at]), std::cos(0.1f));
+  }
 }
 
 TEST_F(ViewPropagationTest, StopsWhenCancelled) {
