@@ -223,15 +223,13 @@ bool IsBelievable(const RegionPlane& plane, const PlaneEvidence& evidence) {
 }
 
 MinedRegions MineRegions(const ViewSet& views,
+                         const WeakRegions& regions,
                          const MethodParams& params,
                          const HypothesisMap& map,
                          uint64_t key,
                          const ScorePlanes& score) {
   const std::vector<Witness> witnesses = WitnessesOf(views);
-  if (witnesses.empty() || !(params.weak_gradient > 0)) return {};
-  const WeakRegions regions = FindWeakRegions(
-      *views.ref.image, params.weak_gradient, params.region_min_share);
-  if (regions.num_regions == 0) return {};
+  if (witnesses.empty() || regions.num_regions == 0) return {};
   const int step = LatticeStep(map);
   const int needed =
       std::min(params.region_min_consistent,

@@ -7,6 +7,7 @@
 #include "src/engine/plane_evidence.h"
 #include "src/engine/view.h"
 #include "src/image/hypothesis_map.h"
+#include "src/prior/weak_regions.h"
 
 #include <vector>
 
@@ -21,8 +22,10 @@ struct MinedRegions {
   std::vector<bool> unexplained;
 };
 
-// `map` is the reference's. `key` identifies the pass in the random numbers.
+// `regions` and `map` are the reference's. `key` identifies the pass in the
+// random numbers.
 MinedRegions MineRegions(const ViewSet& views,
+                         const WeakRegions& regions,
                          const MethodParams& params,
                          const HypothesisMap& map,
                          uint64_t key,

@@ -56,12 +56,14 @@ void MergeLevels(const HypothesisMap& carried,
   map->Touch();
 }
 
+WeakRegions RegionsOf(const ViewSet& views, const MethodParams& params) {
+  return FindWeakRegions(
+      *views.ref.image, params.weak_gradient, params.region_min_share);
+}
+
 // Forgets the hypotheses of textured pixels; returns which.
-std::vector<bool> ForgetTextured(const GrayImage& image,
-                                 const MethodParams& params,
+std::vector<bool> ForgetTextured(const WeakRegions& regions,
                                  HypothesisMap* map) {
-  const WeakRegions regions =
-      FindWeakRegions(image, params.weak_gradient, params.region_min_share);
   std::vector<bool> textured(map->planes.size(), false);
   regions.ForEachBand([&](const Rows& rows) {
     const size_t end = static_cast<size_t>(rows.end) * regions.width;
@@ -74,6 +76,35 @@ std::vector<bool> ForgetTextured(const GrayImage& image,
   });
   map->Touch();
   return textured;
+}
+
+// What a pass takes from the maps of the sources before it starts.
+void AskOtherViews(Backend* backend,
+                   const ViewSet& views,
+                   const Pass& pass,
+                   const MethodParams& params,
+                   const CancelToken* cancel,
+                   HypothesisMap* map,
+                   PhaseTimes* times) {
+  const auto score = [&](const std::vector<PixelPlane>& planes) {
+    return backend->Score(planes, {cancel, nullptr});
+  };
+  WeakRegions regions;
+  {
+    PhaseTimer timer(times, "find regions");
+    regions = RegionsOf(views, params);
+  }
+  if (pass.propagate_views) {
+    PhaseTimer timer(times, "propagate views");
+    PropagateViews(views, regions, score, cancel, map);
+  }
+  if (pass.regions != RegionPriors::kNone) {
+    PhaseTimer timer(times, "build prior");
+    MinedRegions mined =
+        MineRegions(views, regions, params, *map, pass.id, score);
+    map->priors = std::move(mined.priors);
+    map->unexplained = std::move(mined.unexplained);
+  }
 }
 
 }  // namespace
@@ -108,7 +139,7 @@ void RunPasses(Backend* backend,
     carried.masks = Copied(map->masks);
     searched.assign(map->planes.size(), false);
     if (stage.passes.front().start == StartFrom::kMissing)
-      searched = ForgetTextured(*views.ref.image, params, map);
+      searched = ForgetTextured(RegionsOf(views, params), map);
   }
   const double work = StageWork(stage);
   double work_done = JudgeWork(stage);
@@ -131,19 +162,8 @@ void RunPasses(Backend* backend,
             *map, views.ref.camera, *views.ref.image, pass.level, range);
       }
     }
-    const auto score = [&](const std::vector<PixelPlane>& planes) {
-      return backend->Score(planes, {control.cancel, nullptr});
-    };
-    if (pass.propagate_views) {
-      PhaseTimer timer(times, "propagate views");
-      PropagateViews(views, params, score, control.cancel, map);
-    }
-    if (pass.regions != RegionPriors::kNone) {
-      PhaseTimer timer(times, "build prior");
-      MinedRegions mined = MineRegions(views, params, *map, pass.id, score);
-      map->priors = std::move(mined.priors);
-      map->unexplained = std::move(mined.unexplained);
-    }
+    if (pass.propagate_views || pass.regions != RegionPriors::kNone)
+      AskOtherViews(backend, views, pass, params, control.cancel, map, times);
     {
       PhaseTimer timer(times, PhaseName(pass.kind));
       backend->Run(pass, schedule.pattern, map, pass_control);

@@ -3,7 +3,6 @@
 #include "src/base/large_vectors.h"
 #include "src/engine/backend.h"
 #include "src/engine/source_geometry.h"
-#include "src/prior/weak_regions.h"
 
 #include <algorithm>
 #include <cmath>
@@ -287,7 +286,7 @@ void TakeBetter(const ScorePlanes& score,
 }  // namespace
 
 void PropagateViews(const ViewSet& views,
-                    const MethodParams& params,
+                    const WeakRegions& regions,
                     const ScorePlanes& score,
                     const CancelToken* cancel,
                     HypothesisMap* map) {
@@ -298,8 +297,6 @@ void PropagateViews(const ViewSet& views,
       surfaces.emplace_back(views.ref.camera, src);
   }
   if (surfaces.empty()) return;
-  const WeakRegions regions = FindWeakRegions(
-      *views.ref.image, params.weak_gradient, params.region_min_share);
   Votes votes(map->planes.size());
   for (size_t j = 0; j < surfaces.size(); ++j) {
     CountVotes(

@@ -5,20 +5,20 @@
 #pragma once
 
 #include "src/base/cancel.h"
-#include "src/engine/pass.h"
 #include "src/engine/plane_evidence.h"
 #include "src/engine/view.h"
 #include "src/image/hypothesis_map.h"
+#include "src/prior/weak_regions.h"
 
 namespace hpm {
 
 // Every textured pixel takes the plane that most sources found for it, where
 // these are more than found its own and the images match better on that plane;
-// where there is no texture, images cannot tell. The costs of the map are then
-// those of the planes before; touches the map. Throws Error(kInterrupted)
+// in `regions`, without texture, images cannot tell. The costs of the map are
+// then those of the planes before; touches the map. Throws Error(kInterrupted)
 // once `cancel`, which may be null, is set.
 void PropagateViews(const ViewSet& views,
-                    const MethodParams& params,
+                    const WeakRegions& regions,
                     const ScorePlanes& score,
                     const CancelToken* cancel,
                     HypothesisMap* map);

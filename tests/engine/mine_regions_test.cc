@@ -45,7 +45,13 @@ class MineRegionsTest : public PlaneInViews {
   std::vector<Plane> Mine() { return MineAll().priors; }
   MinedRegions MineAll() {
     return MineRegions(
-        views_, params_, map_, 7, [this](const auto& p) { return Score(p); });
+        views_,
+        FindWeakRegions(
+            *views_.ref.image, params_.weak_gradient, params_.region_min_share),
+        params_,
+        map_,
+        7,
+        [this](const auto& p) { return Score(p); });
   }
 
   // Mean depth of the priors over the truth.

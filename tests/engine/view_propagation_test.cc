@@ -1,5 +1,6 @@
 #include "src/engine/view_propagation.h"
 
+#include "src/engine/pass.h"
 #include "tests/engine/plane_in_views.h"
 
 #include <cmath>
@@ -32,7 +33,8 @@ class ViewPropagationTest : public PlaneInViews {
   void Propagate() {
     PropagateViews(
         views_,
-        params_,
+        FindWeakRegions(
+            *views_.ref.image, params_.weak_gradient, params_.region_min_share),
         [this](const std::vector<PixelPlane>& planes) {
           std::vector<float> costs;
           for (const auto& [col, row, plane] : planes) {
