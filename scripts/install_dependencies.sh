@@ -11,6 +11,8 @@
 #   --slurm   also Slurm, with which tests/cluster starts a scheduler of its own
 #   --browser also Chromium, in which tests/browser opens the report of a run; where there is
 #             no such package, a Chrome on PATH will do
+#   --gui     also a virtual display and what presses the buttons of COLMAP's window on it, for
+#             tests/patches/press_stereo_button.sh
 #   --wheel   also what scripts/build_wheel.sh needs: the assembler of libjpeg-turbo
 #   --check   installs nothing; exit code 1 when something is missing
 set -euo pipefail
@@ -73,10 +75,11 @@ for argument in "$@"; do
     --arm64) arm64=1; PACKAGES+=("${ARM64_PACKAGES[@]}") ;;
     --slurm) PACKAGES+=(slurm-wlm munge) ;;
     --browser) PACKAGES+=(chromium) ;;
+    --gui) PACKAGES+=(xvfb xdotool scrot libgl1-mesa-dri) ;;
     --wheel) PACKAGES+=(nasm) ;;
     --check) check=1 ;;
     --help) sed -n '2,/^set /s/^# \{0,1\}//p' "$0"; exit 0 ;;
-    *) echo "usage: scripts/install_dependencies.sh [--colmap] [--colmap-newest] [--arm64] [--release] [--slurm] [--browser] [--wheel] [--check]" >&2; exit 2 ;;
+    *) echo "usage: scripts/install_dependencies.sh [--colmap] [--colmap-newest] [--arm64] [--release] [--slurm] [--browser] [--gui] [--wheel] [--check]" >&2; exit 2 ;;
   esac
 done
 # The arm64 libraries belong to no package manager's list.
