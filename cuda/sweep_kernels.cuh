@@ -53,7 +53,8 @@ __global__ void __launch_bounds__(kWarpsPerBlock* kWarpSize,
   if (warp >= band.num_warps()) return;
   const Pixel pixel = PixelOf(band, warp, lane);
   int evaluations = 0;
-  if (pixel.inside) {
+  // Who is passed over needs no window.
+  if (pixel.inside && !PassesOver(kKind, state, pixel.col, pixel.row)) {
     const Window window = WindowAt(
         problem, &windows[threadIdx.x / kWarpSize], pixel.col, pixel.row);
     const LaneCost<Sampler> cost(problem, window, pixel.col, pixel.row);

@@ -41,6 +41,15 @@ HPM_HD void VisitPixel(const VisitParams& params,
   }
 }
 
+// Whether a sweep of this kind leaves the pixel as it is.
+HPM_HD bool PassesOver(SweepKind kind,
+                       const PixelState& state,
+                       int col,
+                       int row) {
+  return kind == SweepKind::kUpdate && state.settled != nullptr &&
+         state.settled[row * state.width + col] != 0;
+}
+
 // What a sweep is about, beside the pixel.
 struct SweepScope {
   const VisitParams& params;  // `geometric` is that of the sweep
@@ -66,6 +75,7 @@ HPM_HD void VisitPixel(const SweepScope& scope,
     consistent[at] = ConsistentViews(
         params, sweep.filter, src_centers, cost, state.planes[at], col, row);
   } else {
+    if (PassesOver(kKind, state, col, row)) return;
     Rng rng(sweep.key, col, row);
     if constexpr (kKind == SweepKind::kInitialize) {
       InitializePixel(params, state, sweep.start, cost, &rng, col, row);

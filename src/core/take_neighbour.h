@@ -8,7 +8,8 @@ namespace hpm {
 
 // What a cost may rise, for a plane refined at this size in place of one that
 // came up from a coarser level. Its own cost is photometric, those beside it
-// have the geometric term: where the views disagree the pixel keeps its own.
+// have the geometric term (but for settled ones): where the views disagree the
+// pixel keeps its own.
 constexpr float kRefinedMayCostMore = 0.1f;
 
 // Whether the plane of another pixel faces this one at an accepted depth.

@@ -21,9 +21,10 @@ struct RunControl {
 };
 
 // Held by the engine beside what a backend takes, per pixel of the reference: a
-// HypothesisMap, and as much again while levels are merged or priors made.
+// HypothesisMap, as much again while levels are merged or priors made, and
+// whether it is settled.
 constexpr uint64_t kEngineBytesPerPixel =
-    2 * (sizeof(Plane) + sizeof(float) + sizeof(uint32_t));
+    2 * (sizeof(Plane) + sizeof(float) + sizeof(uint32_t)) + sizeof(uint8_t);
 
 class Backend {
  public:

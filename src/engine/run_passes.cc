@@ -4,6 +4,7 @@
 #include "src/engine/local_planes.h"
 #include "src/engine/mine_regions.h"
 #include "src/engine/phase_timer.h"
+#include "src/engine/settled_pixels.h"
 #include "src/engine/view_propagation.h"
 #include "src/engine/visit_params.h"
 #include "src/engine/work_estimate.h"
@@ -104,6 +105,7 @@ void AskOtherViews(Backend* backend,
         MineRegions(views, regions, params, *map, pass.id, score);
     map->priors = std::move(mined.priors);
     map->unexplained = std::move(mined.unexplained);
+    SettleOnPriors(views, regions, params, map);
   }
 }
 
@@ -138,8 +140,11 @@ void RunPasses(Backend* backend,
     carried.costs = Copied(map->costs);
     carried.masks = Copied(map->masks);
     searched.assign(map->planes.size(), false);
-    if (stage.passes.front().start == StartFrom::kMissing)
-      searched = ForgetTextured(RegionsOf(views, params), map);
+    if (stage.passes.front().start == StartFrom::kMissing) {
+      const WeakRegions regions = RegionsOf(views, params);
+      map->settled = SettledByCoarserLevel(views, regions, params, *map);
+      searched = ForgetTextured(regions, map);
+    }
   }
   const double work = StageWork(stage);
   double work_done = JudgeWork(stage);
@@ -181,7 +186,9 @@ void RunPasses(Backend* backend,
                      {views.depth_min, views.depth_max},
                      map);
     }
-    map->priors = std::vector<Plane>();  // gives the memory back, {} would not
+    // Gives the memory back, {} would not.
+    map->priors = std::vector<Plane>();
+    map->settled = std::vector<uint8_t>();
     map->prior_level = 0;
   }
 }

@@ -26,6 +26,9 @@ struct HypothesisMap {
   // it, so that COLMAP's filter cannot tell.
   std::vector<bool> unexplained;
 
+  // Per pixel, not 0: updates pass it over. Empty: none.
+  std::vector<uint8_t> settled;
+
   // Halvings of the grid of `priors`; above 0 only for backends that upsample.
   int prior_level = 0;
 
@@ -53,6 +56,7 @@ struct HypothesisMap {
     masks.assign(size, 0);
     priors.clear();
     unexplained.clear();
+    settled.clear();
     prior_level = 0;
     Touch();
   }
@@ -67,7 +71,8 @@ struct HypothesisMap {
             planes.data(),
             costs.data(),
             masks.data(),
-            priors.empty() ? nullptr : priors.data()};
+            priors.empty() ? nullptr : priors.data(),
+            settled.empty() ? nullptr : settled.data()};
   }
 };
 

@@ -79,6 +79,7 @@ TEST_P(PixelGroupTest, VisitsArePixelByPixelTheSame) {
     const CpuViews views(set, method);
     HypothesisMap expected(kWidth, kHeight), actual = expected;
     std::vector<Plane> priors;
+    std::vector<uint8_t> settled;
     int pass_id = 0;
     for (const StartFrom start :
          {StartFrom::kRandom, StartFrom::kMissing, StartFrom::kPrior}) {
@@ -92,6 +93,9 @@ TEST_P(PixelGroupTest, VisitsArePixelByPixelTheSame) {
       if (start == StartFrom::kMissing) {
         for (size_t i = 0; i < expected.planes.size(); i += 3)
           expected.planes[i] = actual.planes[i] = {};
+        settled.resize(expected.planes.size());
+        for (size_t i = 0; i < settled.size(); ++i)
+          settled[i] = i % 5 < 2 || i / kWidth % 4 == 1;
       }
       if (start == StartFrom::kPrior) {
         priors = expected.planes;
@@ -106,6 +110,9 @@ TEST_P(PixelGroupTest, VisitsArePixelByPixelTheSame) {
         PixelState states[2] = {expected.View(), actual.View()};
         for (PixelState& state : states)
           state.priors = priors.empty() ? nullptr : priors.data();
+        for (PixelState& state : states)
+          state.settled = settled.empty() ? nullptr : settled.data();
+        const std::vector<Plane> before = expected.planes;
         const uint64_t num_expected = VisitOneByOne(
             views,
             GetParam(),
@@ -119,6 +126,11 @@ TEST_P(PixelGroupTest, VisitsArePixelByPixelTheSame) {
         ASSERT_TRUE(SameMaps(expected, actual))
             << "start " << static_cast<int>(start) << ", colour "
             << sweep.color;
+        if (sweep.kind != SweepKind::kUpdate) continue;
+        for (size_t i = 0; i < settled.size(); ++i) {
+          if (settled[i])
+            ASSERT_EQ(expected.planes[i].distance, before[i].distance);
+        }
       }
     }
   }

@@ -58,7 +58,10 @@ class GpuTest : public testing::Test {
     backend->Run(kPrior, pattern_, &map, control_);
     map.priors = {};
     result.prior = map;
+    for (size_t i = 0; i < map.planes.size(); ++i)
+      map.settled.push_back(i % 5 < 2 || i / map.width % 4 == 1);
     backend->Run(kGeometric, pattern_, &map, control_);
+    map.settled = {};
     result.geometric = map;
     backend->Run(HalfPass(), pattern_, &map, control_);
     result.half = map;

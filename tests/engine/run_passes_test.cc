@@ -4,6 +4,7 @@
 
 #include "tests/engine/still_backend.h"
 
+#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -23,6 +24,7 @@ struct Seen {
   int prior_level;
   size_t num_priors;
   std::vector<Plane> planes;
+  std::vector<uint8_t> settled;
 };
 
 // The first pass judges the planes it finds, all alike; any other gives each
@@ -37,8 +39,11 @@ class ScriptedBackend : public StillBackend {
            const SamplingPattern&,
            HypothesisMap* map,
            const RunControl&) override {
-    seen.push_back(
-        {pass.kind, map->prior_level, map->priors.size(), map->planes});
+    seen.push_back({pass.kind,
+                    map->prior_level,
+                    map->priors.size(),
+                    map->planes,
+                    map->settled});
     const bool judges = pass.num_iterations == 0;
     for (size_t i = 0; i < map->planes.size(); ++i) {
       map->costs[i] = judges ? kCoarseCost : costs_of_rows[i / kWidth];
@@ -50,11 +55,14 @@ class ScriptedBackend : public StillBackend {
                            const RunControl&) override {
     std::vector<float> costs;
     for (const PixelPlane& pixel : planes)
-      costs.push_back(pixel.plane.distance > 4.5f ? 0.1f : 0.4f);
+      costs.push_back(std::fabs(pixel.plane.distance - matching_depth) < 0.5f
+                          ? 0.1f
+                          : 0.4f);
     return costs;
   }
 
   std::vector<Seen> seen;
+  float matching_depth = kFineDepth;  // of planes that face the camera
   std::vector<float> costs_of_rows = std::vector<float>(kHeight, 0.01f);
 
  private:
@@ -133,6 +141,18 @@ TEST(RunPasses, ATexturedPixelIsSearchedFromRandomPlanesAPlainOneIsNot) {
   EXPECT_EQ(given[10 * kWidth + kPlain].distance, kCoarseDepth);
 }
 
+TEST(RunPasses, UpdatesPassOverWhatTheCoarserLevelSettled) {
+  ScriptedBackend backend(false);
+  HypothesisMap map = CoarseMap();
+  RunStageOf(kDefaultMethod, true, &backend, &map);
+  ASSERT_EQ(backend.seen.size(), 2u);
+  EXPECT_TRUE(backend.seen[0].settled.empty());
+  ASSERT_EQ(backend.seen[1].settled.size(), map.planes.size());
+  EXPECT_FALSE(backend.seen[1].settled[10 * kWidth + kTextured]);
+  EXPECT_TRUE(backend.seen[1].settled[10 * kWidth + kPlain]);
+  EXPECT_TRUE(map.settled.empty());
+}
+
 // Where the level searched itself it must match clearly worse to lose,
 // elsewhere clearly better to win.
 TEST(RunPasses, WhatALevelKeepsOfTheCoarserOne) {
@@ -159,27 +179,46 @@ TEST(RunPasses, WhatALevelKeepsOfTheCoarserOne) {
   }
 }
 
-TEST(RunPasses, AGeometricPassStartsFromWhatASourceFound) {
-  ViewSet views = HalfTextured();
-  views.srcs[0].inverse_depth =
-      std::make_shared<const InverseDepthMap>(InverseDepthMap::Of(
-          std::vector<float>(kWidth * kHeight, 1 / kFineDepth)));
+// The last stage of the default, whose source is sure of this depth.
+void RunGeometricStage(ViewSet views,
+                       float depth,
+                       ScriptedBackend* backend,
+                       HypothesisMap* map) {
+  views.srcs[0].inverse_depth = std::make_shared<const InverseDepthMap>(
+      InverseDepthMap::Of(std::vector<float>(kWidth * kHeight, 1 / depth)));
   const Schedule schedule = MakeSchedule({kDefaultMethod});
   const StageSpec& stage = schedule.stages.back();
   ASSERT_TRUE(stage.geometric);
-  ScriptedBackend backend(false);
-  HypothesisMap map = CoarseMap();
   const CancelToken cancel;
   PhaseTimes times;
-  RunPasses(&backend,
+  RunPasses(backend,
             views,
             schedule,
             stage,
             DefaultParams(FindMethod(kDefaultMethod)),
             {&cancel, nullptr},
-            &map,
+            map,
             &times);
-  ASSERT_FALSE(backend.seen.empty());
+  ASSERT_FALSE(backend->seen.empty());
+}
+
+TEST(RunPasses, AGeometricPassPassesOverWhatLiesOnItsPrior) {
+  ViewSet views = HalfTextured();
+  views.srcs[0].camera.t = {-1, 0, 0};
+  ScriptedBackend backend(false);
+  backend.matching_depth = kCoarseDepth;
+  HypothesisMap map = CoarseMap();
+  RunGeometricStage(views, kCoarseDepth, &backend, &map);
+  ASSERT_EQ(backend.seen[0].settled.size(), map.planes.size());
+  EXPECT_FALSE(backend.seen[0].settled[10 * kWidth + kTextured]);
+  EXPECT_TRUE(backend.seen[0].settled[10 * kWidth + kPlain]);
+  EXPECT_TRUE(map.settled.empty());
+}
+
+TEST(RunPasses, AGeometricPassStartsFromWhatASourceFound) {
+  ScriptedBackend backend(false);
+  HypothesisMap map = CoarseMap();
+  RunGeometricStage(HalfTextured(), kFineDepth, &backend, &map);
   const std::vector<Plane>& given = backend.seen[0].planes;
   EXPECT_NEAR(given[10 * kWidth + kTextured].distance, kFineDepth, 1e-3);
   EXPECT_EQ(given[10 * kWidth + kPlain].distance, kCoarseDepth);

@@ -60,7 +60,10 @@ class EmulationTest : public testing::Test {
     result.geometric = map;
     backend->Run(HalfPass(), pattern, &map, control_);
     result.half = map;
+    for (size_t i = 0; i < map.planes.size(); ++i)
+      map.settled.push_back(i % 5 < 2 || i / width % 4 == 1);
     backend->Run(kNoMedian, pattern, &map, control_);
+    map.settled = {};
     result.last = map;
     result.photometric_filter =
         backend->ConsistentViews(result.prior, kFilter, false, control_);

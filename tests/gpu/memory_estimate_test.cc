@@ -9,8 +9,9 @@ const ProblemSize kLarge = {3200, 2130, 3200, 2130, 20, true};
 
 TEST(MemoryEstimateTest, CoversStateImagesAndDepths) {
   const uint64_t pixels = 3200 * 2130;
-  // Plane, prior, cost, two masks, grey; per source grey and depth.
-  const uint64_t least = pixels * (16 + 16 + 4 + 4 + 4 + 1 + 20 * (1 + 3));
+  // Plane, prior, cost, two masks, what is settled, grey; per source grey and
+  // depth.
+  const uint64_t least = pixels * (16 + 16 + 4 + 4 + 4 + 1 + 1 + 20 * (1 + 3));
   const uint64_t bytes = DeviceBytesNeeded(kLarge, ImageFormat::kByte);
   EXPECT_GE(bytes, least);
   EXPECT_LE(bytes, least + least / 4);

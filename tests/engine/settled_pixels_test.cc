@@ -1,0 +1,127 @@
+#include "src/engine/settled_pixels.h"
+
+#include "src/prior/region_planes.h"
+
+#include <memory>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+namespace hpm {
+namespace {
+
+constexpr int kWidth = 80, kHeight = 40;
+constexpr int kEdge = 30;  // column; to the left of it there is texture
+constexpr float kDepth = 4;
+
+// Planes that face the camera, a plain surface beside a textured one, and a
+// source view one unit to the right.
+class SettledPixelsTest : public testing::Test {
+ protected:
+  SettledPixelsTest() : map_(kWidth, kHeight) {
+    GrayImage image = {
+        kWidth, kHeight, std::vector<uint8_t>(kWidth * kHeight, 100)};
+    for (int row = 0; row < kHeight; ++row) {
+      for (int col = 0; col < kEdge; ++col)
+        image.data[row * kWidth + col] =
+            static_cast<uint8_t>(60 * (col / 2 % 3) + 40 * (row / 2 % 2));
+    }
+    views_.ref.camera = {kWidth,
+                         kHeight,
+                         kFocalLength,
+                         kFocalLength,
+                         0.5f * (kWidth - 1),
+                         0.5f * (kHeight - 1),
+                         {{1, 0, 0, 0, 1, 0, 0, 0, 1}},
+                         {0, 0, 0}};
+    views_.ref.image = std::make_shared<const GrayImage>(std::move(image));
+    views_.srcs = {views_.ref};
+    views_.srcs[0].camera.t = {-1, 0, 0};
+    regions_ = FindWeakRegions(
+        *views_.ref.image, params_.weak_gradient, params_.region_min_share);
+    map_.planes.assign(map_.planes.size(), AtDepth(kDepth));
+  }
+
+  static Plane AtDepth(float z) { return {{0, 0, -1}, z}; }
+  // A plane so many pixels of parallax farther than kDepth.
+  static Plane Farther(float pixels) {
+    return AtDepth(1 / (1 / kDepth - pixels / kFocalLength));
+  }
+  static size_t At(int col, int row) {
+    return static_cast<size_t>(row) * kWidth + col;
+  }
+  std::vector<uint8_t> ByCoarserLevel() const {
+    return SettledByCoarserLevel(views_, regions_, params_, map_);
+  }
+  void OnPriors() { SettleOnPriors(views_, regions_, params_, &map_); }
+
+  static constexpr float kFocalLength = 40;
+  static constexpr int kCol = 55, kRow = 20;  // deep inside
+  MethodParams params_;
+  ViewSet views_;
+  WeakRegions regions_;
+  HypothesisMap map_;
+};
+
+TEST_F(SettledPixelsTest, OnlyDeepInsideARegion) {
+  const std::vector<uint8_t> settled = ByCoarserLevel();
+  const int depth = params_.patch_radius + kRimWidth;
+  for (const int row : {0, kRow, kHeight - 1}) {
+    EXPECT_TRUE(settled[At(kCol, row)]);
+    EXPECT_TRUE(settled[At(kWidth - 1, row)]);
+    EXPECT_FALSE(settled[At(kEdge / 2, row)]);
+    EXPECT_FALSE(settled[At(kEdge + depth - 1, row)]);
+    EXPECT_TRUE(settled[At(kEdge + depth + 4, row)]);  // texture is blurred
+  }
+}
+
+// What no plane explains differs from place to place.
+TEST_F(SettledPixelsTest, OnlyWherePlanesOfTheCoarserLevelGoOnInEachOther) {
+  const int depth = params_.patch_radius + kRimWidth;
+  for (const auto& [plane, goes_on] : {std::pair(Farther(0.8f), true),
+                                       std::pair(Farther(1.2f), false),
+                                       std::pair(Farther(-1.2f), false),
+                                       std::pair(Plane{}, false)}) {
+    for (const auto& [dcol, drow] : {std::pair(depth, 0),
+                                     std::pair(-depth, 0),
+                                     std::pair(0, depth),
+                                     std::pair(0, -depth),
+                                     std::pair(0, 0)}) {
+      Plane* other = &map_.planes[At(kCol + dcol, kRow + drow)];
+      const Plane before = *other;
+      *other = plane;
+      EXPECT_EQ(ByCoarserLevel()[At(kCol, kRow)] != 0, goes_on)
+          << plane.distance << " " << dcol << " " << drow;
+      *other = before;
+    }
+  }
+}
+
+TEST_F(SettledPixelsTest, WhoLiesOnItsPriorTakesIt) {
+  map_.priors.assign(map_.planes.size(), AtDepth(kDepth));
+  const size_t near = At(kCol, kRow), far = At(kCol, kRow + 1);
+  const size_t without = At(kCol, kRow + 2), missing = At(kCol, kRow + 3);
+  const size_t textured = At(kEdge / 2, kRow);
+  map_.planes[near] = map_.planes[textured] = Farther(0.8f);
+  map_.planes[far] = Farther(1.2f);
+  map_.priors[without].distance = 0;
+  map_.planes[missing].distance = 0;
+  const std::vector<Plane> before = map_.planes;
+  const uint64_t generation = map_.generation;
+  OnPriors();
+  EXPECT_NE(map_.generation, generation);
+  EXPECT_TRUE(map_.settled[near]);
+  EXPECT_EQ(map_.planes[near].distance, kDepth);
+  for (const size_t at : {far, without, missing, textured}) {
+    EXPECT_FALSE(map_.settled[at]) << at;
+    EXPECT_EQ(map_.planes[at].distance, before[at].distance) << at;
+  }
+}
+
+TEST_F(SettledPixelsTest, WithoutPriorsNobodySettles) {
+  OnPriors();
+  EXPECT_TRUE(map_.settled.empty());
+}
+
+}  // namespace
+}  // namespace hpm
