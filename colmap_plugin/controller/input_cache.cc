@@ -55,6 +55,7 @@ std::vector<std::shared_ptr<const GrayImage>> InputCache::Images(
     const std::vector<ImageRequest>& requests) {
   std::vector<std::shared_ptr<const GrayImage>> images;
   std::vector<Key> keys;
+  keys.reserve(requests.size());
   for (const ImageRequest& request : requests) {
     keys.push_back(
         KeyOf(Kind::kImage, request.image, level_ + request.more_levels));
@@ -93,6 +94,7 @@ std::vector<std::shared_ptr<const InverseDepthMap>> InputCache::InverseDepths(
     const std::vector<DepthRequest>& requests) {
   std::vector<std::shared_ptr<const InverseDepthMap>> maps;
   std::vector<Key> keys;
+  keys.reserve(requests.size());
   for (const DepthRequest& request : requests)
     keys.push_back(KeyOf(Kind::kDepth, request.image, request.more_levels));
   for (const Input& kept : Kept(keys))
@@ -127,6 +129,7 @@ InputCounts InputCache::counts() const {
 std::vector<InputCache::Input> InputCache::Kept(const std::vector<Key>& keys) {
   const std::lock_guard<std::mutex> lock(mutex_);
   std::vector<Input> inputs;
+  inputs.reserve(keys.size());
   for (const Key key : keys) inputs.push_back(inputs_.Find(key));
   return inputs;
 }

@@ -31,21 +31,20 @@ class SameSurface {
   float tolerance_;  // of 1/z
 };
 
-// From where on a pixel lies deep inside, in pixels from the rim: neither its
-// window nor those of its neighbours, up to three pixels away, reach anything
-// else.
-int Depth(const MethodParams& params) {
+// How far from the rim a pixel lies deep inside, in pixels: neither its window
+// nor those of its neighbours, up to three pixels away, reach anything else.
+int Margin(const MethodParams& params) {
   return params.patch_radius + kRimWidth;
 }
 
 // Per pixel: deep inside a region, and is_settled(col, row, at).
 template <class IsSettled>
 std::vector<uint8_t> DeepPixels(const WeakRegions& regions,
-                                int depth,
+                                int margin,
                                 const IsSettled& is_settled) {
   std::vector<uint8_t> settled = Filled(regions.label.size(), uint8_t{0});
   regions.ForEachBand([&](const Rows& rows) {
-    const LabelWindows windows(regions, rows, depth);
+    const LabelWindows windows(regions, rows, margin);
     for (int row = rows.begin; row < rows.end; ++row) {
       for (int col = 0; col < regions.width; ++col) {
         const int least = windows.Least(col, row);
@@ -64,13 +63,13 @@ std::vector<uint8_t> SettledByCoarserLevel(const ViewSet& views,
                                            const WeakRegions& regions,
                                            const MethodParams& params,
                                            const HypothesisMap& map) {
-  const int depth = Depth(params);
+  const int margin = Margin(params);
   const SameSurface same_surface(views);
-  return DeepPixels(regions, depth, [&](int col, int row, size_t at) {
+  return DeepPixels(regions, margin, [&](int col, int row, size_t at) {
     const Plane& own = map.planes[at];
     if (!(own.distance > 0)) return false;
-    const int dcol[4] = {depth, -depth, 0, 0};
-    const int drow[4] = {0, 0, depth, -depth};
+    const int dcol[4] = {margin, -margin, 0, 0};
+    const int drow[4] = {0, 0, margin, -margin};
     for (int k = 0; k < 4; ++k) {
       const int c = col + dcol[k], r = row + drow[k];
       if (c < 0 || r < 0 || c >= regions.width || r >= regions.height) continue;
@@ -90,7 +89,7 @@ void SettleOnPriors(const ViewSet& views,
   if (map->priors.empty()) return;
   const SameSurface same_surface(views);
   map->settled =
-      DeepPixels(regions, Depth(params), [&](int col, int row, size_t at) {
+      DeepPixels(regions, Margin(params), [&](int col, int row, size_t at) {
         const Plane& prior = map->priors[at];
         Plane* own = &map->planes[at];
         if (!(prior.distance > 0) || !(own->distance > 0) ||

@@ -65,27 +65,27 @@ class SettledPixelsTest : public testing::Test {
 
 TEST_F(SettledPixelsTest, OnlyDeepInsideARegion) {
   const std::vector<uint8_t> settled = ByCoarserLevel();
-  const int depth = params_.patch_radius + kRimWidth;
+  const int margin = params_.patch_radius + kRimWidth;
   for (const int row : {0, kRow, kHeight - 1}) {
     EXPECT_TRUE(settled[At(kCol, row)]);
     EXPECT_TRUE(settled[At(kWidth - 1, row)]);
     EXPECT_FALSE(settled[At(kEdge / 2, row)]);
-    EXPECT_FALSE(settled[At(kEdge + depth - 1, row)]);
-    EXPECT_TRUE(settled[At(kEdge + depth + 4, row)]);  // texture is blurred
+    EXPECT_FALSE(settled[At(kEdge + margin - 1, row)]);
+    EXPECT_TRUE(settled[At(kEdge + margin + 4, row)]);  // texture is blurred
   }
 }
 
 // What no plane explains differs from place to place.
 TEST_F(SettledPixelsTest, OnlyWherePlanesOfTheCoarserLevelGoOnInEachOther) {
-  const int depth = params_.patch_radius + kRimWidth;
+  const int margin = params_.patch_radius + kRimWidth;
   for (const auto& [plane, goes_on] : {std::pair(Farther(0.8f), true),
                                        std::pair(Farther(1.2f), false),
                                        std::pair(Farther(-1.2f), false),
                                        std::pair(Plane{}, false)}) {
-    for (const auto& [dcol, drow] : {std::pair(depth, 0),
-                                     std::pair(-depth, 0),
-                                     std::pair(0, depth),
-                                     std::pair(0, -depth),
+    for (const auto& [dcol, drow] : {std::pair(margin, 0),
+                                     std::pair(-margin, 0),
+                                     std::pair(0, margin),
+                                     std::pair(0, -margin),
                                      std::pair(0, 0)}) {
       Plane* other = &map_.planes[At(kCol + dcol, kRow + drow)];
       const Plane before = *other;
