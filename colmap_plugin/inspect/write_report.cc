@@ -17,8 +17,7 @@ std::filesystem::path WriteReport(const ControllerOptions& options,
                                   const CancelToken& cancel) {
   ReportData data = GatherReport(options, log, cancel);
   data.program = program;
-  const std::filesystem::path target =
-      path.empty() ? ReportPath(options) : path;
+  std::filesystem::path target = path.empty() ? ReportPath(options) : path;
   WriteFileAtomically(target, ReportHtml(data));
   return target;
 }

@@ -293,7 +293,7 @@ std::string TypeText(const OptionSpec& option) {
 }
 
 std::string AllowedText(const OptionSpec& option) {
-  const std::string type = TypeText(option);
+  std::string type = TypeText(option);
   if (type == "bool") return "0/1, true/false, yes/no or on/off";
   if (option.allowed.text.empty()) return type;
   // Names say themselves that they are text.

@@ -16,7 +16,7 @@ RunSummary RunStereo(const ControllerOptions& options,
                      const LogSink& log,
                      const ProgressSink& progress,
                      const CancelToken& cancel) {
-  const RunSummary summary =
+  RunSummary summary =
       PatchMatchController(options, log, progress, cancel).Run();
   if (!options.hpm.report) return summary;
   const RunShare share(options.hpm);

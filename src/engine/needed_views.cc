@@ -51,8 +51,9 @@ int NeededViews::At(size_t at) const {
 }
 
 int NeededViews::CountSeeing(size_t at) const {
-  const auto x = static_cast<float>(at % map_.width);
-  const auto y = static_cast<float>(at / map_.width);
+  const size_t ref_col = at % map_.width, ref_row = at / map_.width;
+  const auto x = static_cast<float>(ref_col);
+  const auto y = static_cast<float>(ref_row);
   const Plane& plane = map_.planes[at];
   const Vec3f ray = RayAt(views_.ref.camera, x, y);
   const Vec3f point = DepthOnRay(plane, ray) * ray;
@@ -68,7 +69,8 @@ int NeededViews::CountSeeing(size_t at) const {
     if (!IsSeen(warps_[j], slope, x, y, &u, &v)) continue;
     const GrayImage& image = *src.image;
     const auto pixel = [](float position, int size) {
-      return std::clamp(static_cast<int>(position + 0.5f), 0, size - 1);
+      return std::clamp(
+          static_cast<int>(std::floor(position + 0.5f)), 0, size - 1);
     };
     const int col = pixel(u, image.width), row = pixel(v, image.height);
     if (image.IsGap(static_cast<size_t>(row) * image.width + col)) continue;

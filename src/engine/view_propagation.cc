@@ -80,8 +80,8 @@ class FoundSurface {
           v < static_cast<float>(ref_.height) - 0.5f)) {
       return false;
     }
-    *ref_col = static_cast<int>(u + 0.5f);
-    *ref_row = static_cast<int>(v + 0.5f);
+    *ref_col = static_cast<int>(std::floor(u + 0.5f));
+    *ref_row = static_cast<int>(std::floor(v + 0.5f));
     return true;
   }
 
