@@ -50,6 +50,7 @@ std::vector<int> AutomaticSources::All(
     const std::vector<SourceCandidate>& sharing,
     const std::optional<DepthRange>& range) const {
   std::vector<int> sources;
+  sources.reserve(sharing.size());
   for (const SourceCandidate& candidate : sharing)
     sources.push_back(candidate.image);
   if (is_badly_tracked_[ref_image]) {

@@ -22,6 +22,7 @@ constexpr int kNumDepths = 150;
 // `count` steps by equal factors, both ends included.
 std::vector<double> Geometric(double from, double to, int count) {
   std::vector<double> values;
+  values.reserve(count);
   for (int i = 0; i < count; ++i)
     values.push_back(from * std::pow(to / from, i / (count - 1.0)));
   return values;
@@ -127,6 +128,7 @@ std::optional<DepthRange> RangeEstimator::RangeOfParallax(int image) const {
   const std::vector<double> depths =
       Geometric(nearest / 4, farthest / kMinParallax, kNumDepths);
   std::vector<double> support;
+  support.reserve(depths.size());
   for (const double depth : depths)
     support.push_back(Support(image, others, depth));
   const double best = *std::max_element(support.begin(), support.end());

@@ -32,7 +32,7 @@ bool CanReach(double bound,
   for (const int corner : {0, 1, 2, 3}) {
     const Vec3f ray = RayAt(ref,
                             static_cast<float>(ref.width * (corner % 2)),
-                            static_cast<float>(ref.height * (corner / 2)));
+                            corner < 2 ? 0 : static_cast<float>(ref.height));
     for (const float depth : {depth_min, depth_max}) {
       const float z = CamFromWorld(src, WorldFromCam(ref, depth * ray)).z;
       if (!(z > 0) || focal_ratio * depth / z * kRounding >= bound) return true;

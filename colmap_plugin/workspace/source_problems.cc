@@ -50,6 +50,7 @@ std::vector<StereoProblem> SourceProblems(
   const std::vector<std::pair<int, std::vector<const StereoProblem*>>> sources(
       listed_by.begin(), listed_by.end());
   std::vector<int> images;
+  images.reserve(sources.size());
   for (const auto& [image, references] : sources) images.push_back(image);
   const std::vector<std::vector<SourceCandidate>> sharing =
       overview.automatic().Sharing(

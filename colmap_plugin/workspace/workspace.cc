@@ -181,6 +181,7 @@ void Workspace::ReadPmvs() {
                          static_cast<int>(pmvs.sparse.images.size()));
   WritePatchMatchCfg(PatchMatchCfgPath(), MakePmvsCfgEntries(pmvs, images));
   std::vector<std::string> names;
+  names.reserve(images.size());
   for (const int image : images)
     names.push_back(pmvs.sparse.images[image].name);
   WriteFusionCfg(FusionCfgPath(), names);

@@ -80,8 +80,10 @@ class FoundSurface {
           v < static_cast<float>(ref_.height) - 0.5f)) {
       return false;
     }
-    *ref_col = static_cast<int>(std::floor(u + 0.5f));
-    *ref_row = static_cast<int>(std::floor(v + 0.5f));
+    // Not negative, so that cutting off rounds.
+    const float right = u + 0.5f, below = v + 0.5f;
+    *ref_col = static_cast<int>(right);
+    *ref_row = static_cast<int>(below);
     return true;
   }
 

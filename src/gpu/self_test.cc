@@ -63,8 +63,8 @@ View ViewAt(float x, float y) {
                                        z * RayAt(view.camera,
                                                  static_cast<float>(col),
                                                  static_cast<float>(row)));
-      image.data.push_back(static_cast<uint8_t>(
-          Clamp(GreyAt(point.x, point.y), 0.0f, 255.0f) + 0.5f));
+      const float grey = Clamp(GreyAt(point.x, point.y), 0.0f, 255.0f) + 0.5f;
+      image.data.push_back(static_cast<uint8_t>(grey));
     }
   }
   view.image = std::make_shared<const GrayImage>(std::move(image));

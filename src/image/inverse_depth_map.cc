@@ -55,8 +55,9 @@ InverseDepthMap InverseDepthMap::Of(const float* values, size_t count) {
                         // Not below one step, which would read as "no depth".
                         // To the nearest step, which is what cutting off after
                         // adding a half gives from one on.
-                        const auto whole = static_cast<uint32_t>(
-                            std::clamp(values[i] / step, 1.0, kNumSteps) + 0.5);
+                        const double half_above =
+                            std::clamp(values[i] / step, 1.0, kNumSteps) + 0.5;
+                        const auto whole = static_cast<uint32_t>(half_above);
                         uint8_t* bytes = &map.steps[kInverseDepthBytes * i];
                         bytes[0] = static_cast<uint8_t>(whole);
                         bytes[1] = static_cast<uint8_t>(whole >> 8);

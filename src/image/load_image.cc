@@ -33,8 +33,9 @@ GrayImage ToGray(const cv::Mat& bgr) {
   for (int row = 0; row < bgr.rows; ++row) {
     const uint8_t* p = bgr.ptr<uint8_t>(row);
     for (int col = 0; col < bgr.cols; ++col, p += 3) {
-      gray.data[i++] = static_cast<uint8_t>(0.0722f * p[0] + 0.7152f * p[1] +
-                                            0.2126f * p[2] + 0.5f);
+      const float half_above =
+          0.0722f * p[0] + 0.7152f * p[1] + 0.2126f * p[2] + 0.5f;
+      gray.data[i++] = static_cast<uint8_t>(half_above);
     }
   }
   return gray;
@@ -179,8 +180,7 @@ GrayImage Load(const std::filesystem::path& path,
     cv::resize(deep, resized, {width, height}, 0, 0, cv::INTER_AREA);
     return Stretch(resized, *decoding.stretch);
   }
-  const GrayImage gray =
-      ToGray(DecodePicture(path, FlagsFor(decoding.reduction)));
+  GrayImage gray = ToGray(DecodePicture(path, FlagsFor(decoding.reduction)));
   if (decoding.reduction == 1) {
     if (gray.width == width && gray.height == height) return gray;
     return Resize(gray, width, height);

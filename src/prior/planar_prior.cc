@@ -119,8 +119,9 @@ std::vector<Plane> MakePlanarPrior(const Camera& camera,
   for (size_t i = 0; i < size; ++i) {
     if (covered[i]) continue;
     query_pixels.push_back(i);
-    queries.push_back(static_cast<float>(i % camera.width));
-    queries.push_back(static_cast<float>(i / camera.width));
+    const size_t col = i % camera.width, row = i / camera.width;
+    queries.push_back(static_cast<float>(col));
+    queries.push_back(static_cast<float>(row));
   }
   if (query_pixels.empty()) return planes;
   const std::vector<int> nearest = NearestPoints(points).Find(queries);
