@@ -2,6 +2,7 @@
 // stay, and which priors a backend gets.
 #include "src/engine/run_passes.h"
 
+#include "tests/engine/half_textured.h"
 #include "tests/engine/still_backend.h"
 
 #include <cmath>
@@ -70,31 +71,7 @@ class ScriptedBackend : public StillBackend {
   bool upsamples_;
 };
 
-// The left half of the picture has texture, the right half none.
-ViewSet HalfTextured() {
-  GrayImage image = {
-      kWidth, kHeight, std::vector<uint8_t>(kWidth * kHeight, 100)};
-  for (int row = 0; row < kHeight; ++row) {
-    for (int col = 0; col < kWidth / 2; ++col)
-      image.data[row * kWidth + col] =
-          static_cast<uint8_t>(60 * (col / 2 % 3) + 40 * (row / 2 % 2));
-  }
-  ViewSet views;
-  views.ref.camera = {kWidth,
-                      kHeight,
-                      40,
-                      40,
-                      0.5f * (kWidth - 1),
-                      0.5f * (kHeight - 1),
-                      {{1, 0, 0, 0, 1, 0, 0, 0, 1}},
-                      {0, 0, 0}};
-  views.ref.image = std::make_shared<const GrayImage>(std::move(image));
-  views.srcs = {views.ref};
-  views.depth_min = 2;
-  views.depth_max = 8;
-  views.random_key = 1;
-  return views;
-}
+ViewSet LeftHalfTextured() { return HalfTextured(kWidth, kHeight, kWidth / 2); }
 
 // The stage of the method at full size that follows a coarser level, if
 // `from_coarser`, else the first one.
@@ -111,7 +88,7 @@ void RunStageOf(const std::string& method,
   for (const StageSpec& stage : schedule.stages) {
     if (stage.from_coarser != from_coarser) continue;
     RunPasses(backend,
-              HalfTextured(),
+              LeftHalfTextured(),
               schedule,
               stage,
               DefaultParams(FindMethod(method)),
@@ -203,7 +180,7 @@ void RunGeometricStage(ViewSet views,
 }
 
 TEST(RunPasses, AGeometricPassPassesOverWhatLiesOnItsPrior) {
-  ViewSet views = HalfTextured();
+  ViewSet views = LeftHalfTextured();
   views.srcs[0].camera.t = {-1, 0, 0};
   ScriptedBackend backend(false);
   backend.matching_depth = kCoarseDepth;
@@ -218,7 +195,7 @@ TEST(RunPasses, AGeometricPassPassesOverWhatLiesOnItsPrior) {
 TEST(RunPasses, AGeometricPassStartsFromWhatASourceFound) {
   ScriptedBackend backend(false);
   HypothesisMap map = CoarseMap();
-  RunGeometricStage(HalfTextured(), kFineDepth, &backend, &map);
+  RunGeometricStage(LeftHalfTextured(), kFineDepth, &backend, &map);
   const std::vector<Plane>& given = backend.seen[0].planes;
   EXPECT_NEAR(given[10 * kWidth + kTextured].distance, kFineDepth, 1e-3);
   EXPECT_EQ(given[10 * kWidth + kPlain].distance, kCoarseDepth);

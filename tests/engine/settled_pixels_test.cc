@@ -1,8 +1,8 @@
 #include "src/engine/settled_pixels.h"
 
 #include "src/prior/region_planes.h"
+#include "tests/engine/half_textured.h"
 
-#include <memory>
 #include <utility>
 
 #include <gtest/gtest.h>
@@ -18,24 +18,8 @@ constexpr float kDepth = 4;
 // source view one unit to the right.
 class SettledPixelsTest : public testing::Test {
  protected:
-  SettledPixelsTest() : map_(kWidth, kHeight) {
-    GrayImage image = {
-        kWidth, kHeight, std::vector<uint8_t>(kWidth * kHeight, 100)};
-    for (int row = 0; row < kHeight; ++row) {
-      for (int col = 0; col < kEdge; ++col)
-        image.data[row * kWidth + col] =
-            static_cast<uint8_t>(60 * (col / 2 % 3) + 40 * (row / 2 % 2));
-    }
-    views_.ref.camera = {kWidth,
-                         kHeight,
-                         kFocalLength,
-                         kFocalLength,
-                         0.5f * (kWidth - 1),
-                         0.5f * (kHeight - 1),
-                         {{1, 0, 0, 0, 1, 0, 0, 0, 1}},
-                         {0, 0, 0}};
-    views_.ref.image = std::make_shared<const GrayImage>(std::move(image));
-    views_.srcs = {views_.ref};
+  SettledPixelsTest()
+      : views_(HalfTextured(kWidth, kHeight, kEdge)), map_(kWidth, kHeight) {
     views_.srcs[0].camera.t = {-1, 0, 0};
     regions_ = FindWeakRegions(
         *views_.ref.image, params_.weak_gradient, params_.region_min_share);
@@ -55,7 +39,7 @@ class SettledPixelsTest : public testing::Test {
   }
   void OnPriors() { SettleOnPriors(views_, regions_, params_, &map_); }
 
-  static constexpr float kFocalLength = 40;
+  static constexpr float kFocalLength = 40;   // pixels
   static constexpr int kCol = 55, kRow = 20;  // deep inside
   MethodParams params_;
   ViewSet views_;

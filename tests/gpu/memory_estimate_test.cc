@@ -18,6 +18,18 @@ TEST(MemoryEstimateTest, CoversStateImagesAndDepths) {
   EXPECT_GT(DeviceBytesNeeded(kLarge, ImageFormat::kQuad), bytes);
 }
 
+// Between two sizes, so that what every size takes cannot hide a lack.
+TEST(MemoryEstimateTest, EveryByteOfAPixelCounts) {
+  const auto bytes = [](int height) {
+    return DeviceBytesNeeded({3200, height, 3200, height, 20, true},
+                             ImageFormat::kByte);
+  };
+  // Plane, prior, that of a level, cost, two masks, what is settled, grey; per
+  // source grey and depth; an image on its way.
+  const uint64_t least = 16 + 16 + 4 + 4 + 4 + 4 + 1 + 1 + 20 * (1 + 3) + 2;
+  EXPECT_GE(bytes(2 * 2176) - bytes(2176), least * 3200 * 2176);
+}
+
 TEST(MemoryEstimateTest, IsNotCutAt32Bits) {
   const ProblemSize huge = {12000, 9000, 12000, 9000, 32, true};
   const uint64_t pixels = 12000ull * 9000;
