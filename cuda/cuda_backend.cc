@@ -284,9 +284,9 @@ class CudaBackendImpl : public CudaBackend {
                      stream());
       state.priors = priors_.data();
     }
-    if (!map.settled.empty()) {
-      settled_.Upload(map.settled, uploader());
-      state.settled = settled_.data();
+    if (!map.visits.empty()) {
+      visits_.Upload(map.visits, uploader());
+      state.visits = visits_.data();
     }
     const unsigned long long zero = 0;
     counter_.Upload(&zero, 1, uploader());
@@ -373,7 +373,7 @@ class CudaBackendImpl : public CudaBackend {
   DeviceBuffer<Vec3f> src_centers_;
   DeviceBuffer<Plane> planes_, priors_, low_priors_;
   DeviceBuffer<float> costs_;
-  DeviceBuffer<uint8_t> settled_;
+  DeviceBuffer<uint8_t> visits_;
   DeviceBuffer<PixelPlane> pixel_planes_;
   DeviceBuffer<float> pixel_costs_;
   DeviceBuffer<uint32_t> masks_, consistent_;

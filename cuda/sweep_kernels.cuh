@@ -54,7 +54,7 @@ __global__ void __launch_bounds__(kWarpsPerBlock* kWarpSize,
   const Pixel pixel = PixelOf(band, warp, lane);
   int evaluations = 0;
   // Who is passed over needs no window.
-  if (pixel.inside && !PassesOver(kKind, state, pixel.col, pixel.row)) {
+  if (pixel.inside && !PassesOver(sweep, state, pixel.col, pixel.row)) {
     const Window window = WindowAt(
         problem, &windows[threadIdx.x / kWarpSize], pixel.col, pixel.row);
     const LaneCost<Sampler> cost(problem, window, pixel.col, pixel.row);

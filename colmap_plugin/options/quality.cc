@@ -21,9 +21,9 @@ Quality MakeQuality(const std::string& name,
 const std::vector<Quality>& Qualities() {
   static const std::vector<Quality> qualities = {
       MakeQuality("low", 2, 2, 0, 1),
-      MakeQuality("medium", 2, 2, 1, 1),
+      MakeQuality("medium", 2, 2, 2, 1),
       {"high", {}},
-      MakeQuality("extreme", 3, 4, 3, 2)};
+      MakeQuality("extreme", 3, 4, 7, 2)};
   return qualities;
 }
 

@@ -18,8 +18,8 @@ struct PixelState {
                     // accepted
   const Plane* priors;  // prior plane per pixel, distance 0 = none; null = no
                         // priors at all
-  const uint8_t* settled = nullptr;  // not 0: updates pass the pixel over;
-                                     // null = none
+  const uint8_t* visits = nullptr;  // iterations of a pass that visit the
+                                    // pixel; null = all
 };
 
 }  // namespace hpm

@@ -41,13 +41,13 @@ HPM_HD void VisitPixel(const VisitParams& params,
   }
 }
 
-// Whether a sweep of this kind leaves the pixel as it is.
-HPM_HD bool PassesOver(SweepKind kind,
+// Whether a sweep leaves the pixel as it is.
+HPM_HD bool PassesOver(const Sweep& sweep,
                        const PixelState& state,
                        int col,
                        int row) {
-  return kind == SweepKind::kUpdate && state.settled != nullptr &&
-         state.settled[row * state.width + col] != 0;
+  return sweep.kind == SweepKind::kUpdate && state.visits != nullptr &&
+         sweep.iteration >= state.visits[row * state.width + col];
 }
 
 // What a sweep is about, beside the pixel.
@@ -75,7 +75,7 @@ HPM_HD void VisitPixel(const SweepScope& scope,
     consistent[at] = ConsistentViews(
         params, sweep.filter, src_centers, cost, state.planes[at], col, row);
   } else {
-    if (PassesOver(kKind, state, col, row)) return;
+    if (PassesOver(sweep, state, col, row)) return;
     Rng rng(sweep.key, col, row);
     if constexpr (kKind == SweepKind::kInitialize) {
       InitializePixel(params, state, sweep.start, cost, &rng, col, row);

@@ -6,10 +6,10 @@
 
 namespace hpm {
 
-// What a cost may rise, for a plane refined at this size in place of one that
-// came up from a coarser level. Its own cost is photometric, those beside it
-// have the geometric term (but for settled ones): where the views disagree the
-// pixel keeps its own.
+// What a cost may rise in a geometric pass, for a plane refined at this size in
+// place of one that came up from a coarser level. Its own cost is photometric,
+// those beside it have the geometric term (but for settled ones): where the
+// views disagree the pixel keeps its own.
 constexpr float kRefinedMayCostMore = 0.1f;
 
 // Whether the plane of another pixel faces this one at an accepted depth.
@@ -34,7 +34,8 @@ HPM_HD void TakeNeighbour(const VisitParams& params,
   const int dcol[4] = {0, -1, 1, 0};
   const int drow[4] = {-1, 0, 0, 1};
   int best = at;
-  float best_cost = state.costs[at] + kRefinedMayCostMore;
+  float best_cost =
+      state.costs[at] + (params.geometric ? kRefinedMayCostMore : 0.0f);
   for (int b = 0; b < 4; ++b) {
     const int c = col + dcol[b];
     const int r = row + drow[b];

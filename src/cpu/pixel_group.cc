@@ -111,7 +111,7 @@ void PixelGroup::Initialize(int col, int row, int end) {
 
 void PixelGroup::Update(int col, int row, int end) {
   for (; col < end; col += 2) {
-    if (!PassesOver(scope_.sweep.kind, scope_.state, col, row)) Add(col, row);
+    if (!PassesOver(scope_.sweep, scope_.state, col, row)) Add(col, row);
   }
   SearchCandidates();
   for (Member& member : members_) {

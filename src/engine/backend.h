@@ -22,7 +22,7 @@ struct RunControl {
 
 // Held by the engine beside what a backend takes, per pixel of the reference: a
 // HypothesisMap, as much again while levels are merged or priors made, and
-// whether it is settled.
+// how many visits it needs.
 constexpr uint64_t kEngineBytesPerPixel =
     2 * (sizeof(Plane) + sizeof(float) + sizeof(uint32_t)) + sizeof(uint8_t);
 

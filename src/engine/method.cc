@@ -48,9 +48,9 @@ Method Plus() {
           true,
           Priors::kRegions,
           false,
-          500,
+          350,
           200,
-          {2, 1, 2, 2, 1, 4},
+          {2, 1, 2, 5, 1, 4},
           departures};
 }
 

@@ -38,12 +38,14 @@ struct Departures {
   float same_plane_bound = 0;   // pixels, see NearlySame(); 0: not shared
   float worst_cost = kMaxCost;  // see WeightedMean()
   bool ask_all_views = true;    // see ChooseViews()
+  // Searches of levels finer than the coarsest and all but the last geometric
+  // pass of a level visit one colour of the checkerboard.
+  bool half_visits = false;
   // Geometric passes.
   bool search_near = false;           // no hypotheses from the whole range
   int geom_candidates = kNumRegions;  // regions that a visit looks into
   int geom_views = kMaxViews;         // few of those trusted; kMaxViews: all
-  bool half_visits = false;      // all but the last of a level visit one colour
-  bool propagate_views = false;  // see src/engine/view_propagation.h
+  bool propagate_views = false;       // see src/engine/view_propagation.h
   bool fit_planes = false;  // the last one ends in src/engine/local_planes.h
 };
 

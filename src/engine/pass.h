@@ -59,8 +59,8 @@ struct Pass {
   // A visit asks only max_views of the views that the pixel trusted last,
   // those that its neighbours vote for; see ChooseViews().
   bool few_views = false;
-  // Only one colour of the checkerboard is visited after the start; the other
-  // one follows it in the end (src/core/take_neighbour.h).
+  // Only one colour of the checkerboard is visited after the start; after each
+  // iteration the other one follows it (src/core/take_neighbour.h).
   bool half_visits = false;
   // kGeometric: starts with src/engine/view_propagation.h.
   bool propagate_views = false;

@@ -35,26 +35,35 @@ const char* PhaseName(PassKind kind) {
   return "geometric";
 }
 
+constexpr float kClearly = 0.1f;  // of costs
+
 // Merges what a level found itself with what came up from the coarser one,
 // pixel by pixel. A coarse level knows plain surfaces, a fine one detail: where
-// the fine level searched, it must match clearly worse to lose; elsewhere,
-// clearly better to win (as in ACMM's detail restoration).
+// the fine level searched, it must match clearly worse to lose; elsewhere, by
+// `margin` better to win.
 void MergeLevels(const HypothesisMap& carried,
                  const std::vector<bool>& searched,
+                 float margin,
                  HypothesisMap* map) {
-  constexpr float kClearly = 0.1f;
   tbb::parallel_for(
       tbb::blocked_range<size_t>(0, map->planes.size(), kPixelsPerTask),
       [&](const auto& pixels) {
         for (size_t i = pixels.begin(); i < pixels.end(); ++i) {
-          const float margin = searched[i] ? kClearly : -kClearly;
-          if (map->costs[i] < carried.costs[i] + margin) continue;
+          const float may_lose = searched[i] ? kClearly : -margin;
+          if (map->costs[i] < carried.costs[i] + may_lose) continue;
           map->planes[i] = carried.planes[i];
           map->costs[i] = carried.costs[i];
           map->masks[i] = carried.masks[i];
         }
       });
   map->Touch();
+}
+
+// What a level must match better to win where it did not search. In ACMM's
+// detail restoration, clearly. Else by anything: what came up is less exact on
+// a wall, and in a sky it is the same in all views.
+float MarginOf(const Pass& search) {
+  return search.start == StartFrom::kMissing ? 0 : kClearly;
 }
 
 WeakRegions RegionsOf(const ViewSet& views, const MethodParams& params) {
@@ -142,7 +151,7 @@ void RunPasses(Backend* backend,
     searched.assign(map->planes.size(), false);
     if (stage.passes.front().start == StartFrom::kMissing) {
       const WeakRegions regions = RegionsOf(views, params);
-      map->settled = SettledByCoarserLevel(views, regions, params, *map);
+      map->visits = VisitsBelowCoarserLevel(views, regions, params, *map);
       searched = ForgetTextured(regions, map);
     }
   }
@@ -175,7 +184,7 @@ void RunPasses(Backend* backend,
     }
     work_done += PassWork(pass);
     if (stage.from_coarser && pass.kind == PassKind::kBasic) {
-      MergeLevels(carried, searched, map);
+      MergeLevels(carried, searched, MarginOf(pass), map);
       carried = {};  // before priors are made
     }
     if (pass.fit_planes) {
@@ -188,7 +197,7 @@ void RunPasses(Backend* backend,
     }
     // Gives the memory back, {} would not.
     map->priors = std::vector<Plane>();
-    map->settled = std::vector<uint8_t>();
+    map->visits = std::vector<uint8_t>();
     map->prior_level = 0;
   }
 }

@@ -117,8 +117,10 @@ class StageList {
     stage.from_coarser = start != StartFrom::kRandom;
     const int id = next_id_++;
     if (num_iterations > 0) {
-      stage.passes.push_back(
-          NewPass(PassKind::kBasic, start, num_iterations, id));
+      Pass pass = NewPass(PassKind::kBasic, start, num_iterations, id);
+      pass.half_visits =
+          method_.departures.half_visits && start == StartFrom::kMissing;
+      stage.passes.push_back(pass);
     }
     for (const int prior_level : prior_levels) {
       Pass pass = NewPass(PassKind::kPrior,

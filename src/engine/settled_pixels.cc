@@ -13,6 +13,11 @@ namespace {
 // In the source view of the largest parallax.
 constexpr float kSameSurface = 1;  // pixels
 
+// Iterations of a search that visit a pixel without texture: by then it has
+// seen what comes in from an edge nearby.
+constexpr uint8_t kPlainVisits = 2;
+constexpr uint8_t kAllVisits = 255;
+
 // Whether two planes meet the ray of a pixel at nearly the same depth.
 class SameSurface {
  public:
@@ -37,49 +42,54 @@ int Margin(const MethodParams& params) {
   return params.patch_radius + kRimWidth;
 }
 
-// Per pixel: deep inside a region, and is_settled(col, row, at).
+// None for pixels deep inside a region for which is_settled(col, row, at),
+// `plain` for others without texture.
 template <class IsSettled>
-std::vector<uint8_t> DeepPixels(const WeakRegions& regions,
-                                int margin,
-                                const IsSettled& is_settled) {
-  std::vector<uint8_t> settled = Filled(regions.label.size(), uint8_t{0});
+std::vector<uint8_t> VisitsOf(const WeakRegions& regions,
+                              int margin,
+                              uint8_t plain,
+                              const IsSettled& is_settled) {
+  std::vector<uint8_t> visits = Filled(regions.label.size(), kAllVisits);
   regions.ForEachBand([&](const Rows& rows) {
     const LabelWindows windows(regions, rows, margin);
     for (int row = rows.begin; row < rows.end; ++row) {
       for (int col = 0; col < regions.width; ++col) {
-        const int least = windows.Least(col, row);
-        if (least == 0 || least != windows.Greatest(col, row)) continue;
         const size_t at = static_cast<size_t>(row) * regions.width + col;
-        settled[at] = is_settled(col, row, at);
+        if (regions.label[at] == 0) continue;
+        const int least = windows.Least(col, row);
+        const bool deep = least > 0 && least == windows.Greatest(col, row);
+        visits[at] = deep && is_settled(col, row, at) ? 0 : plain;
       }
     }
   });
-  return settled;
+  return visits;
 }
 
 }  // namespace
 
-std::vector<uint8_t> SettledByCoarserLevel(const ViewSet& views,
-                                           const WeakRegions& regions,
-                                           const MethodParams& params,
-                                           const HypothesisMap& map) {
+std::vector<uint8_t> VisitsBelowCoarserLevel(const ViewSet& views,
+                                             const WeakRegions& regions,
+                                             const MethodParams& params,
+                                             const HypothesisMap& map) {
   const int margin = Margin(params);
   const SameSurface same_surface(views);
-  return DeepPixels(regions, margin, [&](int col, int row, size_t at) {
-    const Plane& own = map.planes[at];
-    if (!(own.distance > 0)) return false;
-    const int dcol[4] = {margin, -margin, 0, 0};
-    const int drow[4] = {0, 0, margin, -margin};
-    for (int k = 0; k < 4; ++k) {
-      const int c = col + dcol[k], r = row + drow[k];
-      if (c < 0 || r < 0 || c >= regions.width || r >= regions.height) continue;
-      const Plane& other =
-          map.planes[static_cast<size_t>(r) * regions.width + c];
-      if (!(other.distance > 0) || !same_surface(own, other, c, r))
-        return false;
-    }
-    return true;
-  });
+  return VisitsOf(
+      regions, margin, kPlainVisits, [&](int col, int row, size_t at) {
+        const Plane& own = map.planes[at];
+        if (!(own.distance > 0)) return false;
+        const int dcol[4] = {margin, -margin, 0, 0};
+        const int drow[4] = {0, 0, margin, -margin};
+        for (int k = 0; k < 4; ++k) {
+          const int c = col + dcol[k], r = row + drow[k];
+          if (c < 0 || r < 0 || c >= regions.width || r >= regions.height)
+            continue;
+          const Plane& other =
+              map.planes[static_cast<size_t>(r) * regions.width + c];
+          if (!(other.distance > 0) || !same_surface(own, other, c, r))
+            return false;
+        }
+        return true;
+      });
 }
 
 void SettleOnPriors(const ViewSet& views,
@@ -88,8 +98,8 @@ void SettleOnPriors(const ViewSet& views,
                     HypothesisMap* map) {
   if (map->priors.empty()) return;
   const SameSurface same_surface(views);
-  map->settled =
-      DeepPixels(regions, Margin(params), [&](int col, int row, size_t at) {
+  map->visits = VisitsOf(
+      regions, Margin(params), kAllVisits, [&](int col, int row, size_t at) {
         const Plane& prior = map->priors[at];
         Plane* own = &map->planes[at];
         if (!(prior.distance > 0) || !(own->distance > 0) ||

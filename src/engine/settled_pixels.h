@@ -1,6 +1,7 @@
-// Pixels for which nothing is left to decide, so that updates pass them over
-// (PixelState::settled): deep inside a region without texture, where windows
-// see nothing else, and on a surface that is known already.
+// Pixels without texture need few visits or none (PixelState::visits): what
+// more visits find there is the luck of a window. None is needed by those that
+// are settled: deep inside a region, where windows see nothing else, and on a
+// surface that is known already.
 #pragma once
 
 #include "src/engine/pass.h"
@@ -13,18 +14,18 @@
 
 namespace hpm {
 
-// Those where the planes of the map, which came up from a coarser level, go on
-// in each other: this level sees no more there. Where they do not, no plane
-// explains them, and only that every view searches on by itself keeps the views
-// from agreeing on something wrong.
-std::vector<uint8_t> SettledByCoarserLevel(const ViewSet& views,
-                                           const WeakRegions& regions,
-                                           const MethodParams& params,
-                                           const HypothesisMap& map);
+// For the search of a level whose planes came up from a coarser one. Settled
+// are those pixels where they go on in each other: this level sees no more
+// there. Where they do not, no plane explains them, and only that every view
+// searches on by itself keeps the views from agreeing on something wrong.
+std::vector<uint8_t> VisitsBelowCoarserLevel(const ViewSet& views,
+                                             const WeakRegions& regions,
+                                             const MethodParams& params,
+                                             const HypothesisMap& map);
 
-// Those whose plane lies on the prior of their region. They take the prior: it
-// is the mean of many points, their own plane that of one. Sets map->settled;
-// touches the map.
+// For a geometric pass. Settled are those whose plane lies on the prior of
+// their region. They take the prior: it is the mean of many points, their own
+// plane that of one. Sets map->visits; touches the map.
 void SettleOnPriors(const ViewSet& views,
                     const WeakRegions& regions,
                     const MethodParams& params,

@@ -16,13 +16,12 @@ std::vector<Sweep> SweepsOf(const Pass& pass, uint64_t random_key) {
   sweep.kind = SweepKind::kInitialize;
   sweep.key = CombineBits(pass_key, 0);
   if (pass.start != StartFrom::kStored) add_colors_from(0);
-  sweep.kind = SweepKind::kUpdate;
   for (int iteration = 0; iteration < pass.num_iterations; ++iteration) {
+    sweep.kind = SweepKind::kUpdate;
     sweep.iteration = iteration;
     sweep.key = CombineBits(pass_key, 1 + iteration);
     add_colors_from(pass.first_color());
-  }
-  if (pass.half_visits) {
+    if (!pass.half_visits) continue;
     sweep.kind = SweepKind::kFollow;
     sweep.color = 0;
     sweeps.push_back(sweep);

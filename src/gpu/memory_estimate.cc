@@ -40,7 +40,7 @@ uint64_t DeviceBytesNeeded(const ProblemSize& size, ImageFormat format) {
                          BytesPerTexel(format);
   // Priors of a level are halved once at least.
   const uint64_t low_priors = pixels / 4 * sizeof(Plane);
-  // Plane, prior, cost, mask, and the filter's masks; what is settled.
+  // Plane, prior, cost, mask, and the filter's masks; visits.
   const uint64_t state =
       pixels * (2 * sizeof(Plane) + 3 * sizeof(uint32_t) + sizeof(uint8_t)) +
       low_priors;

@@ -26,8 +26,8 @@ struct HypothesisMap {
   // it, so that COLMAP's filter cannot tell.
   std::vector<bool> unexplained;
 
-  // Per pixel, not 0: updates pass it over. Empty: none.
-  std::vector<uint8_t> settled;
+  // Per pixel, how many iterations of the next pass visit it. Empty: all.
+  std::vector<uint8_t> visits;
 
   // Halvings of the grid of `priors`; above 0 only for backends that upsample.
   int prior_level = 0;
@@ -56,7 +56,7 @@ struct HypothesisMap {
     masks.assign(size, 0);
     priors.clear();
     unexplained.clear();
-    settled.clear();
+    visits.clear();
     prior_level = 0;
     Touch();
   }
@@ -72,7 +72,7 @@ struct HypothesisMap {
             costs.data(),
             masks.data(),
             priors.empty() ? nullptr : priors.data(),
-            settled.empty() ? nullptr : settled.data()};
+            visits.empty() ? nullptr : visits.data()};
   }
 };
 

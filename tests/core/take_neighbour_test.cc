@@ -47,16 +47,26 @@ TEST_F(TakeNeighbourTest, TakesTheCheapestOfTheFourBesideIt) {
   EXPECT_EQ(Owner(1, 1), 5);
 }
 
-TEST_F(TakeNeighbourTest, ARefinedPlaneMayCostALittleMore) {
+TEST_F(TakeNeighbourTest, InAGeometricPassARefinedPlaneMayCostALittleMore) {
+  params_.geometric = true;
   costs_[4] = 0.5f;
   costs_[3] = 0.55f;
   EXPECT_EQ(Owner(1, 1), 3);
 }
 
 TEST_F(TakeNeighbourTest, KeepsItsOwnWhereItMatchesClearlyBetter) {
+  params_.geometric = true;
   costs_[4] = 0.5f;
   costs_[3] = 0.65f;
   EXPECT_EQ(Owner(1, 1), 4);
+}
+
+TEST_F(TakeNeighbourTest, InASearchTheCheaperOneStays) {
+  costs_[4] = 0.5f;
+  costs_[3] = 0.51f;
+  EXPECT_EQ(Owner(1, 1), 4);
+  costs_[3] = 0.49f;
+  EXPECT_EQ(Owner(1, 1), 3);
 }
 
 TEST_F(TakeNeighbourTest, LooksNowhereOutsideTheImage) {

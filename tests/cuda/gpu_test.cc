@@ -5,6 +5,7 @@
 #include "src/cpu/cpu_backend.h"
 #include "src/engine/gpu_error.h"
 #include "src/gpu/self_test.h"
+#include "tests/cpu/made_up_visits.h"
 #include "tests/engine/compare_maps.h"
 #include "tests/gpu/emulated_backend.h"
 #include "tests/gpu/test_problem.h"
@@ -58,10 +59,9 @@ class GpuTest : public testing::Test {
     backend->Run(kPrior, pattern_, &map, control_);
     map.priors = {};
     result.prior = map;
-    for (size_t i = 0; i < map.planes.size(); ++i)
-      map.settled.push_back(i % 5 < 2 || i / map.width % 4 == 1);
+    map.visits = MadeUpVisits(map.width, map.height);
     backend->Run(kGeometric, pattern_, &map, control_);
-    map.settled = {};
+    map.visits = {};
     result.geometric = map;
     backend->Run(HalfPass(), pattern_, &map, control_);
     result.half = map;

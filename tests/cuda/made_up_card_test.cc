@@ -6,6 +6,7 @@
 #include "src/cpu/cpu_backend.h"
 #include "src/engine/gpu_error.h"
 #include "src/gpu/self_test.h"
+#include "tests/cpu/made_up_visits.h"
 #include "tests/engine/compare_maps.h"
 #include "tests/gpu/test_problem.h"
 #include "tests/gpu/whole_runs.h"
@@ -70,10 +71,9 @@ class MadeUpCardTest : public testing::Test {
       map.costs[i] = 0.0015f * static_cast<float>(i * 7919 % 1000);
     }
     map.Touch();
-    for (size_t i = 0; i < map.planes.size(); ++i)
-      map.settled.push_back(i % 5 < 2 || i / kWidth % 4 == 1);
+    map.visits = MadeUpVisits(kWidth, kHeight);
     run(PassKind::kBasic, StartFrom::kMissing);
-    map.settled = {};
+    map.visits = {};
     run(PassKind::kGeometric, StartFrom::kCurrent);
     for (size_t i = 0; i < map.planes.size(); i += 3) {
       map.planes[i].distance *= 1.01f;

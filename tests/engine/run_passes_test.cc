@@ -25,7 +25,7 @@ struct Seen {
   int prior_level;
   size_t num_priors;
   std::vector<Plane> planes;
-  std::vector<uint8_t> settled;
+  std::vector<uint8_t> visits;
 };
 
 // The first pass judges the planes it finds, all alike; any other gives each
@@ -44,7 +44,7 @@ class ScriptedBackend : public StillBackend {
                     map->prior_level,
                     map->priors.size(),
                     map->planes,
-                    map->settled});
+                    map->visits});
     const bool judges = pass.num_iterations == 0;
     for (size_t i = 0; i < map->planes.size(); ++i) {
       map->costs[i] = judges ? kCoarseCost : costs_of_rows[i / kWidth];
@@ -123,15 +123,15 @@ TEST(RunPasses, UpdatesPassOverWhatTheCoarserLevelSettled) {
   HypothesisMap map = CoarseMap();
   RunStageOf(kDefaultMethod, true, &backend, &map);
   ASSERT_EQ(backend.seen.size(), 2u);
-  EXPECT_TRUE(backend.seen[0].settled.empty());
-  ASSERT_EQ(backend.seen[1].settled.size(), map.planes.size());
-  EXPECT_FALSE(backend.seen[1].settled[10 * kWidth + kTextured]);
-  EXPECT_TRUE(backend.seen[1].settled[10 * kWidth + kPlain]);
-  EXPECT_TRUE(map.settled.empty());
+  EXPECT_TRUE(backend.seen[0].visits.empty());
+  ASSERT_EQ(backend.seen[1].visits.size(), map.planes.size());
+  EXPECT_EQ(backend.seen[1].visits[10 * kWidth + kTextured], 255);
+  EXPECT_EQ(backend.seen[1].visits[10 * kWidth + kPlain], 0);
+  EXPECT_TRUE(map.visits.empty());
 }
 
 // Where the level searched itself it must match clearly worse to lose,
-// elsewhere clearly better to win.
+// elsewhere the better match wins.
 TEST(RunPasses, WhatALevelKeepsOfTheCoarserOne) {
   struct Case {
     float own_cost;
@@ -139,7 +139,7 @@ TEST(RunPasses, WhatALevelKeepsOfTheCoarserOne) {
   };
   const std::vector<Case> cases = {
       {kCoarseCost - 0.15f, kFineDepth, kFineDepth},
-      {kCoarseCost - 0.05f, kFineDepth, kCoarseDepth},
+      {kCoarseCost - 0.05f, kFineDepth, kFineDepth},
       {kCoarseCost + 0.05f, kFineDepth, kCoarseDepth},
       {kCoarseCost + 0.15f, kCoarseDepth, kCoarseDepth}};
   for (const Case& c : cases) {
@@ -186,10 +186,10 @@ TEST(RunPasses, AGeometricPassPassesOverWhatLiesOnItsPrior) {
   backend.matching_depth = kCoarseDepth;
   HypothesisMap map = CoarseMap();
   RunGeometricStage(views, kCoarseDepth, &backend, &map);
-  ASSERT_EQ(backend.seen[0].settled.size(), map.planes.size());
-  EXPECT_FALSE(backend.seen[0].settled[10 * kWidth + kTextured]);
-  EXPECT_TRUE(backend.seen[0].settled[10 * kWidth + kPlain]);
-  EXPECT_TRUE(map.settled.empty());
+  ASSERT_EQ(backend.seen[0].visits.size(), map.planes.size());
+  EXPECT_EQ(backend.seen[0].visits[10 * kWidth + kTextured], 255);
+  EXPECT_EQ(backend.seen[0].visits[10 * kWidth + kPlain], 0);
+  EXPECT_TRUE(map.visits.empty());
 }
 
 TEST(RunPasses, AGeometricPassStartsFromWhatASourceFound) {

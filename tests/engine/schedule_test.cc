@@ -210,6 +210,15 @@ TEST(Schedule, OnlyTheLastGeometricPassOfALevelVisitsAllPixels) {
   }
 }
 
+// What a pixel in between needs it takes from those beside it.
+TEST(Schedule, TheSearchOfAFinerLevelVisitsHalfOfThePixels) {
+  for (const StageSpec& stage : MakeSchedule(Options("hpm_plus", 3)).stages) {
+    if (stage.geometric) continue;
+    ASSERT_EQ(stage.passes.size(), 1u);
+    EXPECT_EQ(stage.passes[0].half_visits, stage.level < 2) << stage.level;
+  }
+}
+
 TEST(Schedule, NespHasNoPriors) {
   EXPECT_THAT(PriorLevels("nesp", 3), testing::IsEmpty());
 }
@@ -255,9 +264,10 @@ TEST(AutomaticLevels, FollowTheLongerSide) {
   EXPECT_EQ(AutomaticLevels(plus, 1), 1);
   EXPECT_EQ(AutomaticLevels(plus, 200), 1);
   EXPECT_EQ(AutomaticLevels(plus, 400), 2);
-  EXPECT_EQ(AutomaticLevels(plus, 1000), 2);
-  EXPECT_EQ(AutomaticLevels(plus, 1600), 3);
-  EXPECT_EQ(AutomaticLevels(plus, 3200), 4);
+  EXPECT_EQ(AutomaticLevels(plus, 640), 2);
+  EXPECT_EQ(AutomaticLevels(plus, 800), 3);
+  EXPECT_EQ(AutomaticLevels(plus, 1600), 4);
+  EXPECT_EQ(AutomaticLevels(plus, 3200), 5);
 }
 
 }  // namespace

@@ -35,10 +35,11 @@ class SettledPixelsTest : public testing::Test {
     return static_cast<size_t>(row) * kWidth + col;
   }
   std::vector<uint8_t> ByCoarserLevel() const {
-    return SettledByCoarserLevel(views_, regions_, params_, map_);
+    return VisitsBelowCoarserLevel(views_, regions_, params_, map_);
   }
   void OnPriors() { SettleOnPriors(views_, regions_, params_, &map_); }
 
+  static constexpr int kFew = 2, kAll = 255;  // visits
   static constexpr float kFocalLength = 40;   // pixels
   static constexpr int kCol = 55, kRow = 20;  // deep inside
   MethodParams params_;
@@ -48,14 +49,14 @@ class SettledPixelsTest : public testing::Test {
 };
 
 TEST_F(SettledPixelsTest, OnlyDeepInsideARegion) {
-  const std::vector<uint8_t> settled = ByCoarserLevel();
+  const std::vector<uint8_t> visits = ByCoarserLevel();
   const int margin = params_.patch_radius + kRimWidth;
   for (const int row : {0, kRow, kHeight - 1}) {
-    EXPECT_TRUE(settled[At(kCol, row)]);
-    EXPECT_TRUE(settled[At(kWidth - 1, row)]);
-    EXPECT_FALSE(settled[At(kEdge / 2, row)]);
-    EXPECT_FALSE(settled[At(kEdge + margin - 1, row)]);
-    EXPECT_TRUE(settled[At(kEdge + margin + 4, row)]);  // texture is blurred
+    EXPECT_EQ(visits[At(kCol, row)], 0);
+    EXPECT_EQ(visits[At(kWidth - 1, row)], 0);
+    EXPECT_EQ(visits[At(kEdge / 2, row)], kAll);
+    EXPECT_EQ(visits[At(kEdge + margin - 1, row)], kFew);
+    EXPECT_EQ(visits[At(kEdge + margin + 4, row)], 0);  // texture is blurred
   }
 }
 
@@ -74,7 +75,7 @@ TEST_F(SettledPixelsTest, OnlyWherePlanesOfTheCoarserLevelGoOnInEachOther) {
       Plane* other = &map_.planes[At(kCol + dcol, kRow + drow)];
       const Plane before = *other;
       *other = plane;
-      EXPECT_EQ(ByCoarserLevel()[At(kCol, kRow)] != 0, goes_on)
+      EXPECT_EQ(ByCoarserLevel()[At(kCol, kRow)], goes_on ? 0 : kFew)
           << plane.distance << " " << dcol << " " << drow;
       *other = before;
     }
@@ -94,17 +95,17 @@ TEST_F(SettledPixelsTest, WhoLiesOnItsPriorTakesIt) {
   const uint64_t generation = map_.generation;
   OnPriors();
   EXPECT_NE(map_.generation, generation);
-  EXPECT_TRUE(map_.settled[near]);
+  EXPECT_EQ(map_.visits[near], 0);
   EXPECT_EQ(map_.planes[near].distance, kDepth);
   for (const size_t at : {far, without, missing, textured}) {
-    EXPECT_FALSE(map_.settled[at]) << at;
+    EXPECT_EQ(map_.visits[at], kAll) << at;
     EXPECT_EQ(map_.planes[at].distance, before[at].distance) << at;
   }
 }
 
 TEST_F(SettledPixelsTest, WithoutPriorsNobodySettles) {
   OnPriors();
-  EXPECT_TRUE(map_.settled.empty());
+  EXPECT_TRUE(map_.visits.empty());
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // a card adds to this is its own rounding and its hardware.
 #include "src/core/sampling_pattern.h"
 #include "src/cpu/cpu_backend.h"
+#include "tests/cpu/made_up_visits.h"
 #include "tests/engine/compare_maps.h"
 #include "tests/gpu/emulated_backend.h"
 #include "tests/gpu/test_problem.h"
@@ -18,7 +19,6 @@ namespace {
 constexpr int kWidth = 61;
 constexpr int kHeight = 43;
 
-const Pass kNoMedian = {PassKind::kBasic, StartFrom::kCurrent, 1, 3, 0, false};
 const FilterParams kFilter = {0.1f, 0.05f, 1.0f, 2};
 
 struct Result {
@@ -60,10 +60,9 @@ class EmulationTest : public testing::Test {
     result.geometric = map;
     backend->Run(HalfPass(), pattern, &map, control_);
     result.half = map;
-    for (size_t i = 0; i < map.planes.size(); ++i)
-      map.settled.push_back(i % 5 < 2 || i / width % 4 == 1);
-    backend->Run(kNoMedian, pattern, &map, control_);
-    map.settled = {};
+    map.visits = MadeUpVisits(width, height);
+    backend->Run(HalfSearch(), pattern, &map, control_);
+    map.visits = {};
     result.last = map;
     result.photometric_filter =
         backend->ConsistentViews(result.prior, kFilter, false, control_);

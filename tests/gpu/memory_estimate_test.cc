@@ -9,7 +9,7 @@ const ProblemSize kLarge = {3200, 2130, 3200, 2130, 20, true};
 
 TEST(MemoryEstimateTest, CoversStateImagesAndDepths) {
   const uint64_t pixels = 3200 * 2130;
-  // Plane, prior, cost, two masks, what is settled, grey; per source grey and
+  // Plane, prior, cost, two masks, visits, grey; per source grey and
   // depth.
   const uint64_t least = pixels * (16 + 16 + 4 + 4 + 4 + 1 + 1 + 20 * (1 + 3));
   const uint64_t bytes = DeviceBytesNeeded(kLarge, ImageFormat::kByte);
@@ -24,7 +24,7 @@ TEST(MemoryEstimateTest, EveryByteOfAPixelCounts) {
     return DeviceBytesNeeded({3200, height, 3200, height, 20, true},
                              ImageFormat::kByte);
   };
-  // Plane, prior, that of a level, cost, two masks, what is settled, grey; per
+  // Plane, prior, that of a level, cost, two masks, visits, grey; per
   // source grey and depth; an image on its way.
   const uint64_t least = 16 + 16 + 4 + 4 + 4 + 4 + 1 + 1 + 20 * (1 + 3) + 2;
   EXPECT_GE(bytes(2 * 2176) - bytes(2176), least * 3200 * 2176);

@@ -16,8 +16,15 @@ inline const Pass kPrior = {PassKind::kPrior, StartFrom::kPrior, 2, 1};
 inline const Pass kGeometric = {
     PassKind::kGeometric, StartFrom::kCurrent, 2, 2};
 
+// Without the median.
+inline Pass HalfSearch() {
+  Pass pass = {PassKind::kBasic, StartFrom::kCurrent, 3, 3, 0, false};
+  pass.half_visits = true;
+  return pass;
+}
+
 inline Pass HalfPass() {
-  Pass pass = {PassKind::kGeometric, StartFrom::kCurrent, 1, 4};
+  Pass pass = {PassKind::kGeometric, StartFrom::kCurrent, 2, 4};
   pass.half_visits = true;
   pass.few_views = true;
   pass.max_views = 2;
