@@ -178,11 +178,10 @@ class CudaBackendImpl : public CudaBackend {
     UseDevice();
     SetPass(pass, pattern, &tables_);
     const PixelState state = Upload(*map, ReadBy(pass.start));
-    const int num_steps = pass.NumSteps();
     int step = 0;
     for (const Sweep& sweep : SweepsOf(pass, random_key_)) {
       RunSweep(sweep, state, nullptr, control);
-      if (step < num_steps && control.progress) {
+      if (CountsAsStep(sweep.kind) && control.progress) {
         control.progress(StepsWork(pass, ++step) / PassWork(pass));
       }
     }

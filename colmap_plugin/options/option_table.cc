@@ -228,7 +228,7 @@ std::vector<OptionSpec> MakeTable() {
       Hpm(kExpert, kPasses, "num_geom_passes", &H::num_geom_passes, Between(-1, kMaxPasses),
           "Geometric passes; -1 or 0: the method's own"),
       Hpm(kExpert, kPasses, "num_fine_iterations", &H::num_fine_iterations, Between(-1, kMaxIterations),
-          "Hpm.num_iterations of hpm_plus at levels finer than the coarsest, each of which visits half of the pixels; -1: its own"),
+          "Iterations of hpm_plus at levels finer than the coarsest; each visits half of the pixels; -1: its own"),
       Hpm(kExpert, kPasses, "num_fine_geom_passes", &H::num_fine_geom_passes, Between(-1, kMaxPasses),
           "Hpm.num_geom_passes of hpm_plus at levels finer than the coarsest; -1 or 0: its own"),
       Hpm(kExpert, kAllStages, "max_views", &H::max_views, Between(-1, kMaxViews),

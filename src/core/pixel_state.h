@@ -8,6 +8,9 @@
 
 namespace hpm {
 
+// In PixelState::visits: a pixel that every iteration visits.
+constexpr uint8_t kAllVisits = 255;
+
 // Non-owning; the backend holds the arrays.
 struct PixelState {
   int width, height;

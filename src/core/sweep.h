@@ -28,6 +28,11 @@ struct Sweep {
   FilterParams filter;  // kConsistency
 };
 
+// Whether the visits of a sweep are what its pass takes its time for.
+inline bool CountsAsStep(SweepKind kind) {
+  return kind == SweepKind::kInitialize || kind == SweepKind::kUpdate;
+}
+
 // One visit of a sweep that needs no matching cost.
 HPM_HD void VisitPixel(const VisitParams& params,
                        const Sweep& sweep,
@@ -46,8 +51,9 @@ HPM_HD bool PassesOver(const Sweep& sweep,
                        const PixelState& state,
                        int col,
                        int row) {
-  return sweep.kind == SweepKind::kUpdate && state.visits != nullptr &&
-         sweep.iteration >= state.visits[row * state.width + col];
+  if (sweep.kind != SweepKind::kUpdate || state.visits == nullptr) return false;
+  const uint8_t visits = state.visits[row * state.width + col];
+  return visits != kAllVisits && sweep.iteration >= visits;
 }
 
 // What a sweep is about, beside the pixel.

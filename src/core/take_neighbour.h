@@ -1,4 +1,4 @@
-// A pixel that a pass has not visited follows those that it has.
+// A pixel that an iteration has not visited follows those that it has.
 #pragma once
 
 #include "src/core/pixel_state.h"
@@ -7,9 +7,9 @@
 namespace hpm {
 
 // What a cost may rise in a geometric pass, for a plane refined at this size in
-// place of one that came up from a coarser level. Its own cost is photometric,
-// those beside it have the geometric term (but for settled ones): where the
-// views disagree the pixel keeps its own.
+// place of one that came up from a coarser level. At first its own cost is
+// photometric, those beside it have the geometric term (but for settled ones):
+// where the views disagree the pixel keeps its own.
 constexpr float kRefinedMayCostMore = 0.1f;
 
 // Whether the plane of another pixel faces this one at an accepted depth.
@@ -25,7 +25,8 @@ HPM_HD bool IsAccepted(const VisitParams& params,
 }
 
 // Takes the hypothesis of the direct neighbour, of the other colour, whose cost
-// is smallest; keeps its own where it matches clearly better.
+// is smallest; keeps its own where it matches better, in a geometric pass
+// clearly better.
 HPM_HD void TakeNeighbour(const VisitParams& params,
                           const PixelState& state,
                           int col,

@@ -67,11 +67,10 @@ class CpuBackend : public Backend {
            const RunControl& control) override {
     const PixelState state = map->View();
     const VisitParams params = ForPass(visit_, method_, pass);
-    const int num_steps = pass.NumSteps();
     int step = 0;
     for (const Sweep& sweep : SweepsOf(pass, random_key_)) {
       RunSweep(params, pattern, sweep, state, control);
-      if (step < num_steps && control.progress)
+      if (CountsAsStep(sweep.kind) && control.progress)
         control.progress(StepsWork(pass, ++step) / PassWork(pass));
     }
     map->Touch();

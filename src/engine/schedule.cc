@@ -84,6 +84,8 @@ class StageList {
       int num_geom_passes = is_coarsest ? numbers_.num_geom_passes
                                         : numbers_.num_fine_geom_passes;
       if (numbers_.num_geom_passes == 0) {
+        // Nobody visits the other half later: whole visits, half as often.
+        if (!is_coarsest) num_iterations = (num_iterations + 1) / 2;
         num_iterations = std::max(1, num_iterations);
         num_geom_passes = 0;
       }
@@ -118,8 +120,9 @@ class StageList {
     const int id = next_id_++;
     if (num_iterations > 0) {
       Pass pass = NewPass(PassKind::kBasic, start, num_iterations, id);
-      pass.half_visits =
-          method_.departures.half_visits && start == StartFrom::kMissing;
+      pass.half_visits = method_.departures.half_visits &&
+                         start == StartFrom::kMissing &&
+                         num_geom_passes_after > 0;
       stage.passes.push_back(pass);
     }
     for (const int prior_level : prior_levels) {

@@ -16,7 +16,6 @@ constexpr float kSameSurface = 1;  // pixels
 // Iterations of a search that visit a pixel without texture: by then it has
 // seen what comes in from an edge nearby.
 constexpr uint8_t kPlainVisits = 2;
-constexpr uint8_t kAllVisits = 255;
 
 // Whether two planes meet the ray of a pixel at nearly the same depth.
 class SameSurface {

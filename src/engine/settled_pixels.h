@@ -1,7 +1,8 @@
 // Pixels without texture need few visits or none (PixelState::visits): what
 // more visits find there is the luck of a window. None is needed by those that
 // are settled: deep inside a region, where windows see nothing else, and on a
-// surface that is known already.
+// surface that is known already. In half visits a pixel that is not visited may
+// still follow another one.
 #pragma once
 
 #include "src/engine/pass.h"

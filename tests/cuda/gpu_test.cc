@@ -61,6 +61,7 @@ class GpuTest : public testing::Test {
     result.prior = map;
     map.visits = MadeUpVisits(map.width, map.height);
     backend->Run(kGeometric, pattern_, &map, control_);
+    backend->Run(HalfSearch(), pattern_, &map, control_);
     map.visits = {};
     result.geometric = map;
     backend->Run(HalfPass(), pattern_, &map, control_);

@@ -73,6 +73,7 @@ class MadeUpCardTest : public testing::Test {
     map.Touch();
     map.visits = MadeUpVisits(kWidth, kHeight);
     run(PassKind::kBasic, StartFrom::kMissing);
+    backend->Run(HalfSearch(), pattern_, &map, {&cancel_, nullptr});
     map.visits = {};
     run(PassKind::kGeometric, StartFrom::kCurrent);
     for (size_t i = 0; i < map.planes.size(); i += 3) {
@@ -116,7 +117,7 @@ TEST_F(MadeUpCardTest, WholeRunsGiveTheBytesOfTheScalarCpuBackend) {
 }
 
 // The engine merges levels on the host, whoever matches.
-TEST_F(MadeUpCardTest, MemoryNeededCoversTwoMapsAndWhatIsSettledOnTheHost) {
+TEST_F(MadeUpCardTest, MemoryNeededCoversTwoMapsAndTheVisitsOnTheHost) {
   EXPECT_GE(Make()->MemoryNeeded(1000, 1000, 1), 1000u * 1000u * 49u);
 }
 

@@ -173,6 +173,16 @@ TEST(Schedule, WithoutGeometricPassesFinerLevelsMatch) {
   ASSERT_EQ(schedule.stages.size(), 2u);
   ASSERT_EQ(schedule.stages[1].passes.size(), 1u);
   EXPECT_EQ(schedule.stages[1].passes[0].num_iterations, 1);
+  EXPECT_FALSE(schedule.stages[1].passes[0].half_visits);
+}
+
+TEST(Schedule, WithoutGeometricPassesFinerLevelsVisitAllPixelsHalfAsOften) {
+  ScheduleOptions options = Options("hpm_plus", 2);
+  options.num_geom_passes = 0;
+  options.num_fine_iterations = 5;
+  const Pass pass = MakeSchedule(options).stages[1].passes.at(0);
+  EXPECT_FALSE(pass.half_visits);
+  EXPECT_EQ(pass.num_iterations, 3);
 }
 
 // Else nothing would be there to be filtered.
@@ -264,7 +274,8 @@ TEST(AutomaticLevels, FollowTheLongerSide) {
   EXPECT_EQ(AutomaticLevels(plus, 1), 1);
   EXPECT_EQ(AutomaticLevels(plus, 200), 1);
   EXPECT_EQ(AutomaticLevels(plus, 400), 2);
-  EXPECT_EQ(AutomaticLevels(plus, 640), 2);
+  EXPECT_EQ(AutomaticLevels(plus, 700), 2);
+  EXPECT_EQ(AutomaticLevels(plus, 702), 3);
   EXPECT_EQ(AutomaticLevels(plus, 800), 3);
   EXPECT_EQ(AutomaticLevels(plus, 1600), 4);
   EXPECT_EQ(AutomaticLevels(plus, 3200), 5);

@@ -24,7 +24,7 @@ std::vector<double> Shares(const ScheduleOptions& options) {
 TEST(WorkEstimate, StagesTakeWhatWasMeasured) {
   const std::vector<double> shares = Shares({"hpm_plus", -1, -1, -1, 2});
   const double measured[][2] = {
-      {11.5, 12.8}, {3.5, 5.6}, {5.1, 6.5}, {47.7, 54.4}, {24.0, 28.5}};
+      {9.1, 10.6}, {3.3, 6.4}, {4.5, 8.0}, {43.5, 60.2}, {22.9, 31.4}};
   ASSERT_EQ(shares.size(), std::size(measured));
   for (size_t i = 0; i < shares.size(); ++i) {
     EXPECT_GT(shares[i], measured[i][0] - 1) << i;

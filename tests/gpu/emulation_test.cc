@@ -61,6 +61,9 @@ class EmulationTest : public testing::Test {
     backend->Run(HalfPass(), pattern, &map, control_);
     result.half = map;
     map.visits = MadeUpVisits(width, height);
+    for (size_t i = 0; i < map.planes.size(); i += 4)
+      map.planes[i].distance = 0;
+    map.Touch();
     backend->Run(HalfSearch(), pattern, &map, control_);
     map.visits = {};
     result.last = map;

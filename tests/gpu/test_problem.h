@@ -18,7 +18,7 @@ inline const Pass kGeometric = {
 
 // Without the median.
 inline Pass HalfSearch() {
-  Pass pass = {PassKind::kBasic, StartFrom::kCurrent, 3, 3, 0, false};
+  Pass pass = {PassKind::kBasic, StartFrom::kMissing, 3, 3, 0, false};
   pass.half_visits = true;
   return pass;
 }
