@@ -28,7 +28,7 @@ cmake --preset arm64 -B "$build" "${options[@]}" >"$folder/cmake.log" 2>&1 ||
 # Each test is a target of the same name.
 tests=(
   candidates consistency_filter geometric_term initialize_pixel match_cost median_filter plane
-  prior_term refinement rng sampling_pattern take_neighbour update_pixel view_selection warp
+  prior_term refinement rng sampling_pattern sweep take_neighbour update_pixel view_selection warp
   load_image prior triangulation_opencv mine_regions schedule memory_plan lru_cache
   texel_image cpu_targets cpu_views cpu_backend
 )

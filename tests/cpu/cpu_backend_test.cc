@@ -190,6 +190,29 @@ TEST_F(CpuBackendTest, AHalfPassVisitsOneColour) {
   EXPECT_GT(num_moved, 300);
 }
 
+// To follow takes no time that a person waits for.
+TEST_F(CpuBackendTest, TheProgressOfAHalfPassCountsItsVisits) {
+  const auto backend = MakeCpuBackend("auto", 1);
+  backend->SetViews(views_, MethodParams());
+  HypothesisMap map(kWidth, kHeight);
+  Pass pass = {PassKind::kBasic, StartFrom::kRandom, 3, 0};
+  pass.half_visits = true;
+  uint64_t num_costs = 0;
+  int num_steps = 0;
+  double share = 0;
+  backend->Run(
+      pass, pattern_, &map, {&cancel_, [&](double done) {
+                               EXPECT_GT(backend->num_cost_evaluations(),
+                                         num_costs);
+                               num_costs = backend->num_cost_evaluations();
+                               EXPECT_GT(done, share);
+                               share = done;
+                               ++num_steps;
+                             }});
+  EXPECT_EQ(num_steps, 2 + 3);
+  EXPECT_EQ(share, 1);
+}
+
 TEST_F(CpuBackendTest, AnotherSeedGivesAnotherMap) {
   EXPECT_FALSE(SameBytes(RunAll(2, 1).map.planes, RunAll(2, 2).map.planes));
 }

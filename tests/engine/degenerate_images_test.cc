@@ -2,6 +2,7 @@
 // sound maps.
 #include "src/cpu/cpu_backend.h"
 #include "tests/engine/estimate.h"
+#include "tests/engine/forward_camera.h"
 
 #include <functional>
 #include <memory>
@@ -29,14 +30,7 @@ std::vector<RenderedView> PaintedViews(int num_views,
   std::vector<RenderedView> views;
   for (int i = 0; i < num_views; ++i) {
     RenderedView view;
-    view.camera = {width,
-                   height,
-                   40,
-                   40,
-                   0.5f * static_cast<float>(width - 1),
-                   0.5f * static_cast<float>(height - 1),
-                   {{1, 0, 0, 0, 1, 0, 0, 0, 1}},
-                   {-0.3f * static_cast<float>(i), 0, 0}};
+    view.camera = ForwardCamera(width, height, 0.3f * static_cast<float>(i));
     for (int row = 0; row < height; ++row) {
       for (int col = 0; col < width; ++col) {
         view.grey.push_back(paint(i, col, row));

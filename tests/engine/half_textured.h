@@ -2,6 +2,7 @@
 #pragma once
 
 #include "src/engine/view.h"
+#include "tests/engine/forward_camera.h"
 
 #include <cstdint>
 #include <memory>
@@ -23,14 +24,7 @@ inline ViewSet HalfTextured(int width, int height, int edge) {
           static_cast<uint8_t>(60 * (col / 2 % 3) + 40 * (row / 2 % 2));
   }
   ViewSet views;
-  views.ref.camera = {width,
-                      height,
-                      40,
-                      40,
-                      0.5f * static_cast<float>(width - 1),
-                      0.5f * static_cast<float>(height - 1),
-                      {{1, 0, 0, 0, 1, 0, 0, 0, 1}},
-                      {0, 0, 0}};
+  views.ref.camera = ForwardCamera(width, height, 0);
   views.ref.image = std::make_shared<const GrayImage>(std::move(image));
   views.srcs = {views.ref};
   views.depth_min = 2;
