@@ -17,18 +17,10 @@ import tempfile
 
 import numpy as np
 
+from map_files import read_map
 from suite import copy_workspace
 
 NUM_CLASSES = 10
-
-
-def read_map(path):
-    with open(path, "rb") as file:
-        header = b""
-        while header.count(b"&") < 3:
-            header += file.read(1)
-        width, height, _ = (int(word) for word in header.split(b"&")[:3])
-        return np.fromfile(file, np.float32).reshape(-1, height, width)[0]
 
 
 def pixels_of(dense, within):
@@ -37,9 +29,9 @@ def pixels_of(dense, within):
     folder = dense / "stereo/depth_maps"
     for path in sorted(folder.rglob("*.geometric.bin")):
         name = path.relative_to(folder).as_posix()[: -len(".geometric.bin")]
-        depth = read_map(path)
-        confidence = read_map(dense / "stereo/confidence_maps" / path.relative_to(folder))
-        true_depth = read_map(dense / f"gt/depth_maps/{name}.bin")
+        depth = read_map(path)[0]
+        confidence = read_map(dense / "stereo/confidence_maps" / path.relative_to(folder))[0]
+        true_depth = read_map(dense / f"gt/depth_maps/{name}.bin")[0]
         if true_depth.shape != depth.shape:
             sys.exit(f"{name}: the truth has another size; leave max_image_size out")
         known = (depth > 0) & (true_depth > 0)

@@ -20,14 +20,9 @@ import numpy as np
 
 import proc
 import scale
+from map_files import write_map
 
 KINDS = 10  # of maps
-
-
-def write_map(path, values):
-    height, width = values.shape[-2:]
-    channels = values.size // (height * width)
-    path.write_bytes(f"{width}&{height}&{channels}&".encode() + values.astype("<f4").tobytes())
 
 
 def make_maps(dense, names, width, height):

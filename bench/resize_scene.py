@@ -15,26 +15,14 @@ import tempfile
 import numpy as np
 import pycolmap
 
-
-def read_map(path):
-    """COLMAP's depth or normal map: height x width x channels."""
-    data = path.read_bytes()
-    width, height, channels, values = data.split(b"&", 3)
-    shape = int(channels), int(height), int(width)
-    return np.moveaxis(np.frombuffer(values, np.float32).reshape(shape), 0, 2)
-
-
-def write_map(path, array):
-    path.parent.mkdir(parents=True, exist_ok=True)
-    height, width, channels = array.shape
-    path.write_bytes(f"{width}&{height}&{channels}&".encode() + np.moveaxis(array, 2, 0).astype(np.float32).tobytes())
+from map_files import read_map, write_map
 
 
 def nearest(array, width, height):
     """Samples at the centres of the new pixels."""
-    rows = ((np.arange(height) + 0.5) * array.shape[0] / height).astype(int)
-    cols = ((np.arange(width) + 0.5) * array.shape[1] / width).astype(int)
-    return array[np.ix_(rows, cols)]
+    rows = ((np.arange(height) + 0.5) * array.shape[1] / height).astype(int)
+    cols = ((np.arange(width) + 0.5) * array.shape[2] / width).astype(int)
+    return array[:, rows[:, None], cols]
 
 
 def main():
@@ -49,6 +37,10 @@ def main():
         shutil.copyfile(args.scene / "suite.json", args.out / "suite.json")
 
     model = pycolmap.Reconstruction(args.scene / "sparse")
+    for image in model.images.values():
+        scale = args.width / model.cameras[image.camera_id].width
+        for point in image.points2D:
+            point.xy = point.xy * scale
     for camera in model.cameras.values():
         camera.rescale(args.width, round(camera.height * args.width / camera.width))
     model.write(args.out / "sparse")
@@ -67,9 +59,11 @@ def main():
             target.parent.mkdir(parents=True, exist_ok=True)
             picture.write(str(target))
             for kind in ("depth_maps", "normal_maps"):
-                path = truth / kind / f"{image.name}.bin"
-                if path.exists():
-                    write_map(args.out / "gt" / kind / path.name, nearest(read_map(path), camera.width, camera.height))
+                name = pathlib.Path("gt") / kind / f"{image.name}.bin"
+                if (truth.parent / name).exists():
+                    (args.out / name).parent.mkdir(parents=True, exist_ok=True)
+                    whole = read_map(truth.parent / name)
+                    write_map(args.out / name, nearest(whole, camera.width, camera.height))
         if (truth / "points.ply").exists():
             shutil.copyfile(truth / "points.ply", args.out / "gt/points.ply")
 

@@ -19,21 +19,10 @@ import tempfile
 import numpy as np
 import pycolmap
 
+from map_files import read_map, write_map
+
 SUFFIX = ".geometric.bin"
 RIM = 2  # pixels
-
-
-def read_depth(path):
-    data = path.read_bytes()
-    width, height, channels = (int(n) for n in data.split(b"&", 3)[:3])
-    assert channels == 1, path
-    values = data[len(data) - 4 * width * height:]
-    return np.frombuffer(values, "<f4").reshape(height, width).copy()
-
-
-def write_depth(path, depth):
-    height, width = depth.shape
-    path.write_bytes(f"{width}&{height}&1&".encode() + depth.astype("<f4").tobytes())
 
 
 def sky_of(image_path, height, width):
@@ -68,13 +57,13 @@ def report(workspace):
         num_sky = num_with_depth = num_pixels = side = 0
         for path in sorted((without / "stereo/depth_maps").rglob("*" + SUFFIX)):
             name = str(path.relative_to(without / "stereo/depth_maps"))[:-len(SUFFIX)]
-            depth = read_depth(path)
+            depth = read_map(path)[0]
             sky = sky_of(without / "images" / name, *depth.shape)
             side = max(side, *depth.shape)
             num_pixels += depth.size
             num_sky += sky.sum()
             num_with_depth += (sky & (depth > 0)).sum()
-            write_depth(path, np.where(sky, 0, depth))
+            write_map(path, np.where(sky, 0, depth))
         num_fused = count_fused(workspace, side)
         num_others = count_fused(without, side)
     print(f"{workspace}: {100 * num_sky / num_pixels:.1f} % of the pixels are sky, "
