@@ -10,7 +10,7 @@ namespace hpm {
 namespace {
 
 // Raise when the same options give other maps.
-constexpr int kAlgorithmVersion = 16;
+constexpr int kAlgorithmVersion = 17;
 
 // The pose as the reference sees it.
 void AddImage(const Workspace& workspace,
@@ -113,6 +113,7 @@ void AddToFingerprint(const Pass& pass, Fingerprint* hash) {
                max_views,
                few_views,
                half_visits,
+               rest_plain,
                propagate_views,
                fit_planes] = pass;
   AddAll(hash,
@@ -129,6 +130,7 @@ void AddToFingerprint(const Pass& pass, Fingerprint* hash) {
          max_views,
          few_views,
          half_visits,
+         rest_plain,
          propagate_views,
          fit_planes);
 }

@@ -39,6 +39,7 @@ Method Plus() {
   departures.geom_candidates = 4;
   departures.geom_views = 2;
   departures.half_visits = true;
+  departures.rest_plain = true;
   departures.propagate_views = true;
   departures.fit_planes = true;
   return {kDefaultMethod,
@@ -50,7 +51,7 @@ Method Plus() {
           false,
           350,
           200,
-          {2, 1, 2, 5, 1, 4},
+          {3, 1, 2, 5, 1, 4},
           departures};
 }
 

@@ -41,6 +41,7 @@ struct Departures {
   // Searches of levels finer than the coarsest and all but the last geometric
   // pass of a level visit one colour of the checkerboard.
   bool half_visits = false;
+  bool rest_plain = false;  // of the search of the coarsest level
   // Geometric passes.
   bool search_near = false;           // no hypotheses from the whole range
   int geom_candidates = kNumRegions;  // regions that a visit looks into

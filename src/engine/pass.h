@@ -62,6 +62,8 @@ struct Pass {
   // Only one colour of the checkerboard is visited after the start; after each
   // iteration the other one follows it (src/core/take_neighbour.h).
   bool half_visits = false;
+  // kBasic: pixels without texture are visited twice at most.
+  bool rest_plain = false;
   // kGeometric: starts with src/engine/view_propagation.h.
   bool propagate_views = false;
   // After the clean-up every pixel takes the plane that its neighbourhood lies

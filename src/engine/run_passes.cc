@@ -155,6 +155,10 @@ void RunPasses(Backend* backend,
       searched = ForgetTextured(regions, map);
     }
   }
+  if (stage.passes.front().rest_plain) {
+    PhaseTimer timer(times, "find regions");
+    map->visits = VisitsByTexture(RegionsOf(views, params));
+  }
   const double work = StageWork(stage);
   double work_done = JudgeWork(stage);
   for (const Pass& pass : stage.passes) {

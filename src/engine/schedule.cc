@@ -123,6 +123,8 @@ class StageList {
       pass.half_visits = method_.departures.half_visits &&
                          start == StartFrom::kMissing &&
                          num_geom_passes_after > 0;
+      pass.rest_plain =
+          method_.departures.rest_plain && start == StartFrom::kRandom;
       stage.passes.push_back(pass);
     }
     for (const int prior_level : prior_levels) {

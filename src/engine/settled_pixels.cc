@@ -66,6 +66,13 @@ std::vector<uint8_t> VisitsOf(const WeakRegions& regions,
 
 }  // namespace
 
+std::vector<uint8_t> VisitsByTexture(const WeakRegions& regions) {
+  std::vector<uint8_t> visits = Filled(regions.label.size(), kAllVisits);
+  for (size_t at = 0; at < visits.size(); ++at)
+    if (regions.label[at] != 0) visits[at] = kPlainVisits;
+  return visits;
+}
+
 std::vector<uint8_t> VisitsBelowCoarserLevel(const ViewSet& views,
                                              const WeakRegions& regions,
                                              const MethodParams& params,

@@ -15,6 +15,10 @@
 
 namespace hpm {
 
+// For the search of the coarsest level, where nothing is settled: as often as
+// any other plain pixel, however many iterations textured ones are given.
+std::vector<uint8_t> VisitsByTexture(const WeakRegions& regions);
+
 // For the search of a level whose planes came up from a coarser one. Settled
 // are those pixels where they go on in each other: this level sees no more
 // there. Where they do not, no plane explains them, and only that every view

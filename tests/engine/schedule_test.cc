@@ -119,6 +119,7 @@ TEST_P(EveryMethod, OnlyOursDepartsFromThePaper) {
       EXPECT_EQ(pass.few_views, ours && stage.geometric);
       EXPECT_EQ(pass.propagate_views, ours && stage.geometric);
       EXPECT_EQ(pass.max_candidates < kNumRegions, ours && stage.geometric);
+      EXPECT_EQ(pass.rest_plain, ours && pass.start == StartFrom::kRandom);
       EXPECT_TRUE(ours || !(pass.half_visits || pass.fit_planes));
     }
   }

@@ -48,6 +48,18 @@ class SettledPixelsTest : public testing::Test {
   HypothesisMap map_;
 };
 
+TEST_F(SettledPixelsTest, BeforeAnythingIsFoundTextureDecides) {
+  const std::vector<uint8_t> visits = VisitsByTexture(regions_);
+  ASSERT_EQ(visits.size(), map_.planes.size());
+  for (const int row : {0, kRow, kHeight - 1}) {
+    for (int col = 0; col < kWidth; ++col) {
+      EXPECT_EQ(visits[At(col, row)], regions_.At(col, row) > 0 ? kFew : kAll);
+    }
+    EXPECT_EQ(visits[At(kEdge / 2, row)], kAll);
+    EXPECT_EQ(visits[At(kCol, row)], kFew);
+  }
+}
+
 TEST_F(SettledPixelsTest, OnlyDeepInsideARegion) {
   const std::vector<uint8_t> visits = ByCoarserLevel();
   const int margin = params_.patch_radius + kRimWidth;

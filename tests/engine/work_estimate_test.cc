@@ -24,7 +24,7 @@ std::vector<double> Shares(const ScheduleOptions& options) {
 TEST(WorkEstimate, StagesTakeWhatWasMeasured) {
   const std::vector<double> shares = Shares({"hpm_plus", -1, -1, -1, 2});
   const double measured[][2] = {
-      {9.1, 10.6}, {3.3, 6.4}, {4.5, 8.0}, {43.5, 60.2}, {22.9, 31.4}};
+      {12.9, 15.6}, {3.7, 6.4}, {5.4, 8.2}, {39.3, 52.2}, {23.2, 32.6}};
   ASSERT_EQ(shares.size(), std::size(measured));
   for (size_t i = 0; i < shares.size(); ++i) {
     EXPECT_GT(shares[i], measured[i][0] - 1) << i;

@@ -103,6 +103,7 @@ TEST(StageFingerprint, EveryMemberOfAPassCounts) {
          max_views,
          few_views,
          half_visits,
+         rest_plain,
          propagate_views,
          fit_planes] = pass;
   ExpectEveryMemberCounts(pass,
@@ -119,6 +120,7 @@ TEST(StageFingerprint, EveryMemberOfAPassCounts) {
                           max_views,
                           few_views,
                           half_visits,
+                          rest_plain,
                           propagate_views,
                           fit_planes);
 }

@@ -24,7 +24,7 @@ TEST(MethodOptions, DefaultsAreThePapersNotColmaps) {
 
 TEST(MethodOptions, NumbersThatAreNotGivenAreTheMethodsOwn) {
   ControllerOptions options;
-  EXPECT_EQ(MakeScheduleOptions(options).num_iterations, 2);
+  EXPECT_EQ(MakeScheduleOptions(options).num_iterations, 3);
   EXPECT_EQ(MakeMethodParams(options).max_views, 4);
   EXPECT_EQ(MakeMethodParams(options).cut_color, 15);
   options.hpm.method = "hpm";
