@@ -3,19 +3,11 @@
 #include "colmap_plugin/options/effective_options.h"
 #include "colmap_plugin/options/option_table.h"
 
-#include <algorithm>
 #include <filesystem>
 #include <string>
 
 namespace hpm {
 namespace {
-
-bool FillsWhatIsMissing(const StageSpec& stage) {
-  return std::any_of(
-      stage.passes.begin(), stage.passes.end(), [](const Pass& pass) {
-        return pass.start == StartFrom::kMissing;
-      });
-}
 
 bool IsConcerned(Concerns concerns, const StageSpec& stage, bool is_final) {
   switch (concerns) {
@@ -23,8 +15,6 @@ bool IsConcerned(Concerns concerns, const StageSpec& stage, bool is_final) {
       return true;
     case Concerns::kGeometricStages:
       return stage.geometric;
-    case Concerns::kRegionStages:
-      return stage.geometric || FillsWhatIsMissing(stage);
     case Concerns::kFinalStage:
       return is_final;
     case Concerns::kPasses:

@@ -16,7 +16,6 @@ constexpr OptionGroup kExpert = OptionGroup::kExpert;
 
 constexpr Concerns kAllStages = Concerns::kAllStages;
 constexpr Concerns kGeometricStages = Concerns::kGeometricStages;
-constexpr Concerns kRegionStages = Concerns::kRegionStages;
 constexpr Concerns kFinalStage = Concerns::kFinalStage;
 constexpr Concerns kPasses = Concerns::kPasses;
 constexpr Concerns kInputs = Concerns::kInputs;
@@ -233,7 +232,7 @@ std::vector<OptionSpec> MakeTable() {
           "Hpm.num_geom_passes of hpm_plus at levels finer than the coarsest; -1 or 0: its own"),
       Hpm(kExpert, kAllStages, "max_views", &H::max_views, Between(-1, kMaxViews),
           "Source images that judge a pixel at a time, chosen anew in every iteration; -1 or 0: the method's own"),
-      Hpm(kExpert, kRegionStages, "weak_gradient", &H::weak_gradient, AtLeast(0),
+      Hpm(kExpert, kAllStages, "weak_gradient", &H::weak_gradient, AtLeast(0),
           "Grey levels per pixel under which a region counts as untextured (hpm_plus)"),
       Hpm(kExpert, kGeometricStages, "geom_weight", &H::geom_weight, AtLeast(0),
           "Weight of the geometric term per pixel of reprojection error"),
@@ -307,8 +306,6 @@ std::string ConcernsText(const OptionSpec& option) {
       return "all stages";
     case kGeometricStages:
       return "geometric stages";
-    case kRegionStages:
-      return "geometric stages, finer levels";
     case kFinalStage:
       return "the last stage";
     case kPasses:

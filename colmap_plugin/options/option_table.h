@@ -24,8 +24,6 @@ enum class Concerns {
   // The value is in the fingerprint of
   kAllStages,
   kGeometricStages,
-  kRegionStages,  // that look for regions without texture: geometric ones, and
-                  // those that fill what a coarser level left open
   kFinalStage,
   // The value is not in any fingerprint, but what follows from it is:
   kPasses,        // the passes of each stage
