@@ -9,8 +9,8 @@ namespace {
 constexpr double kStartWork = 0.15;
 // From scenes with few plain surfaces to one that has many, 0.13 to 0.6.
 constexpr double kMiningWork = 0.45;
-// A sixth of a geometric pass.
-constexpr double kPropagationWork = 0.06;
+// A tenth of a geometric pass.
+constexpr double kPropagationWork = 0.035;
 // Fewer regions, fewer views, no hypotheses from the whole range; but the
 // sources' depths are looked at, too.
 constexpr double kFewViewsIteration = 0.6;

@@ -176,7 +176,7 @@ TEST_F(StagePlanTest, EachOptionChangesTheFingerprintsItConcerns) {
   EXPECT_EQ(ChangedBy([&] { hpm.geom_weight = 0.2; }), geometric);
   EXPECT_EQ(ChangedBy([&] { hpm.geom_max_error = 3; }), geometric);
   EXPECT_EQ(ChangedBy([&] { hpm.max_views = 3; }), all);
-  EXPECT_EQ(ChangedBy([&] { hpm.weak_gradient = 0; }), geometric);
+  EXPECT_EQ(ChangedBy([&] { hpm.weak_gradient = 0; }), all);
   EXPECT_EQ(ChangedBy([&] { options_.random_seed = 5; }), all);
   EXPECT_EQ(ChangedBy([&] { colmap.window_radius = 4; }), all);
   EXPECT_EQ(ChangedBy([&] { colmap.sigma_spatial = 4; }), all);
