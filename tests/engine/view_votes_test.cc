@@ -20,7 +20,7 @@ TEST_P(ViewVotesTest, EveryCellHearsWhatTheSourcesFound) {
   options.num_views = 4;
   options.width = GetParam();
   options.height = 241;
-  const auto rendered = RenderViews(MakeScene("tilted_plane", options), 1);
+  const auto rendered = RenderViews(MakeScene("sphere", options), 1);
   ViewSet views = AsViewSet(rendered);
   AddTrueDepths(rendered, 0, &views);
   WeakRegions regions;
@@ -41,7 +41,7 @@ TEST_P(ViewVotesTest, EveryCellHearsWhatTheSourcesFound) {
     ASSERT_EQ(votes.cell(), cell);
     ASSERT_EQ(votes.num_cols(), (options.width + cell - 1) / cell);
     ASSERT_EQ(votes.num_rows(), (options.height + cell - 1) / cell);
-    int num_won = 0;
+    int num_won = 0, num_right = 0;
     for (int row = 0; row < votes.num_rows(); ++row) {
       for (int col = 0; col < votes.num_cols(); ++col) {
         const Plane winner = votes.Winner(col, row);
@@ -50,18 +50,18 @@ TEST_P(ViewVotesTest, EveryCellHearsWhatTheSourcesFound) {
         const int x = cell * col, y = cell * row;
         const float truth =
             rendered[0].truth.depth[static_cast<size_t>(y) * map.width + x];
-        EXPECT_NEAR(DepthAt(views.ref.camera,
-                            winner,
-                            static_cast<float>(x),
-                            static_cast<float>(y)),
-                    truth,
-                    0.005f * truth);
+        const float z = DepthAt(views.ref.camera,
+                                winner,
+                                static_cast<float>(x),
+                                static_cast<float>(y));
+        num_right += std::fabs(z - truth) < 0.002f * truth;
       }
     }
     if (wrong == 1) {
-      EXPECT_EQ(num_won, 0);
+      EXPECT_LT(num_won, 0.02 * votes.num_cols() * votes.num_rows());
     } else {
-      EXPECT_GT(num_won, 0.75 * votes.num_cols() * votes.num_rows());
+      EXPECT_GT(num_won, 0.6 * votes.num_cols() * votes.num_rows());
+      EXPECT_GT(num_right, 0.94 * num_won);  // but around the sphere's outline
     }
   }
 }
