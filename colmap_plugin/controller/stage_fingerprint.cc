@@ -10,7 +10,7 @@ namespace hpm {
 namespace {
 
 // Raise when the same options give other maps.
-constexpr int kAlgorithmVersion = 18;
+constexpr int kAlgorithmVersion = 19;
 
 // The pose as the reference sees it.
 void AddImage(const Workspace& workspace,
@@ -107,6 +107,7 @@ void AddToFingerprint(const Pass& pass, Fingerprint* hash) {
                level,
                median,
                regions,
+               triangles,
                ask_all_views,
                search_near,
                max_candidates,
@@ -124,6 +125,7 @@ void AddToFingerprint(const Pass& pass, Fingerprint* hash) {
          level,
          median,
          regions,
+         triangles,
          ask_all_views,
          search_near,
          max_candidates,

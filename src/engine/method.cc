@@ -41,6 +41,7 @@ Method Plus() {
   departures.half_visits = true;
   departures.rest_plain = true;
   departures.propagate_views = true;
+  departures.triangles = true;
   departures.fit_planes = true;
   return {kDefaultMethod,
           "the default: HPM-MVS with planes of regions that have evidence of "

@@ -43,6 +43,7 @@ struct Departures {
   bool half_visits = false;
   bool rest_plain = false;  // of the search of the coarsest level
   // Geometric passes.
+  bool triangles = false;             // of the first, see offer_triangles.h
   bool search_near = false;           // no hypotheses from the whole range
   int geom_candidates = kNumRegions;  // regions that a visit looks into
   int geom_views = kMaxViews;         // few of those trusted; kMaxViews: all

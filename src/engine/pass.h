@@ -52,7 +52,9 @@ struct Pass {
   int level = 0;  // kPrior: the prior is built on maps halved this many times
   bool median = true;                          // clean up at the end
   RegionPriors regions = RegionPriors::kNone;  // kGeometric only
-  bool ask_all_views = false;                  // see ChooseViews()
+  // Where no region has a plane, triangles do (src/engine/offer_triangles.h).
+  bool triangles = false;            // kGeometric with weak regions only
+  bool ask_all_views = false;        // see ChooseViews()
   bool search_near = false;          // no hypotheses from the whole depth range
   int max_candidates = kNumRegions;  // regions that a visit looks into
   int max_views = kMaxViews;         // and not more than of MethodParams

@@ -3,6 +3,7 @@
 #include "src/base/large_vectors.h"
 #include "src/engine/local_planes.h"
 #include "src/engine/mine_regions.h"
+#include "src/engine/offer_triangles.h"
 #include "src/engine/phase_timer.h"
 #include "src/engine/settled_pixels.h"
 #include "src/engine/view_propagation.h"
@@ -115,6 +116,7 @@ void AskOtherViews(Backend* backend,
     map->priors = std::move(mined.priors);
     map->unexplained = std::move(mined.unexplained);
     SettleOnPriors(views, regions, params, map);
+    if (pass.triangles) OfferTriangles(views, regions, score, map);
   }
 }
 

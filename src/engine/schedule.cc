@@ -68,7 +68,7 @@ class StageList {
                      PriorLevels(method_.priors, num_levels_),
                      numbers_.num_geom_passes);
       for (int i = 0; i < numbers_.num_geom_passes; ++i)
-        AddGeometric(level, RegionPriors::kNone, false);
+        AddGeometric(level, RegionPriors::kNone, false, false);
     }
   }
 
@@ -99,6 +99,7 @@ class StageList {
         AddGeometric(
             level,
             last && level == 0 ? RegionPriors::kStrong : RegionPriors::kWeak,
+            method_.departures.triangles && is_coarsest && i == 0 && !last,
             last);
       }
     }
@@ -138,7 +139,10 @@ class StageList {
     stages_->push_back(stage);
   }
 
-  void AddGeometric(int level, RegionPriors regions, bool last_of_level) {
+  void AddGeometric(int level,
+                    RegionPriors regions,
+                    bool triangles,
+                    bool last_of_level) {
     const Departures& departures = method_.departures;
     StageSpec stage;
     stage.level = level;
@@ -148,6 +152,7 @@ class StageList {
                         numbers_.num_geom_iterations,
                         next_id_++);
     pass.regions = regions;
+    pass.triangles = triangles;
     pass.search_near = departures.search_near;
     pass.max_candidates = departures.geom_candidates;
     pass.max_views = departures.geom_views;

@@ -10,8 +10,10 @@ std::vector<Plane> BuildLevelPrior(const HypothesisMap& map,
                                    int level,
                                    const PriorRange& range) {
   const LevelMap reduced = MakeLevel(map, camera, level);
-  return MakePlanarPrior(
-      reduced.camera, FindCrediblePoints(reduced, kCredibleCost), range);
+  return MakePlanarPrior(reduced.camera,
+                         FindCrediblePoints(reduced, kCredibleCost),
+                         range,
+                         OutsideTriangles::kNearestPoints);
 }
 
 std::vector<Plane> BuildPrior(const HypothesisMap& map,

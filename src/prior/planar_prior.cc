@@ -100,7 +100,8 @@ Plane NearestPlane(const std::vector<CrediblePoint>& points,
 
 std::vector<Plane> MakePlanarPrior(const Camera& camera,
                                    const std::vector<CrediblePoint>& points,
-                                   const PriorRange& range) {
+                                   const PriorRange& range,
+                                   OutsideTriangles outside) {
   const size_t size = static_cast<size_t>(camera.width) * camera.height;
   std::vector<Plane> planes(size, kNoPlane);
   std::vector<bool> covered(size, false);
@@ -112,7 +113,8 @@ std::vector<Plane> MakePlanarPrior(const Camera& camera,
                  &planes,
                  &covered);
   }
-  if (points.size() < kNumNearest) return planes;
+  if (outside == OutsideTriangles::kNothing || points.size() < kNumNearest)
+    return planes;
 
   std::vector<float> queries;
   std::vector<size_t> query_pixels;

@@ -119,6 +119,7 @@ TEST_P(EveryMethod, OnlyOursDepartsFromThePaper) {
       EXPECT_EQ(pass.few_views, ours && stage.geometric);
       EXPECT_EQ(pass.propagate_views, ours && stage.geometric);
       EXPECT_EQ(pass.max_candidates < kNumRegions, ours && stage.geometric);
+      EXPECT_TRUE(ours || !pass.triangles);
       EXPECT_EQ(pass.rest_plain, ours && pass.start == StartFrom::kRandom);
       EXPECT_TRUE(ours || !(pass.half_visits || pass.fit_planes));
     }
@@ -218,6 +219,19 @@ TEST(Schedule, OnlyTheLastGeometricPassOfALevelVisitsAllPixels) {
     const bool last = s + 1 == schedule.stages.size() ||
                       schedule.stages[s + 1].level < stage.level;
     EXPECT_EQ(stage.passes.back().half_visits, !last) << s;
+  }
+}
+
+// A later pass could contradict them no more.
+TEST(Schedule, TrianglesAreOfferedInTheFirstGeometricPassOnly) {
+  for (const int num_levels : {1, 3}) {
+    ScheduleOptions options = Options("hpm_plus", num_levels);
+    const Schedule schedule = MakeSchedule(options);
+    for (size_t s = 0; s < schedule.stages.size(); ++s)
+      EXPECT_EQ(schedule.stages[s].passes.back().triangles, s == 1) << s;
+    options.num_geom_passes = 1;
+    for (const StageSpec& stage : MakeSchedule(options).stages)
+      EXPECT_FALSE(stage.passes.back().triangles);
   }
 }
 

@@ -19,6 +19,13 @@ CrediblePoint PointOn(const Camera& camera,
   return {col, row, DepthAt(camera, plane, x, y) * RayAt(camera, x, y)};
 }
 
+std::vector<Plane> AsPublished(const Camera& camera,
+                               const std::vector<CrediblePoint>& points,
+                               const PriorRange& range = kRange) {
+  return MakePlanarPrior(
+      camera, points, range, OutsideTriangles::kNearestPoints);
+}
+
 int CountPlanes(const std::vector<Plane>& planes) {
   int count = 0;
   for (const Plane& plane : planes) count += plane.distance > 0;
@@ -32,7 +39,7 @@ TEST(PlanarPrior, TrianglesOfAPlaneGiveThePlane) {
        {std::pair(0, 0), {39, 0}, {0, 29}, {39, 29}, {17, 12}}) {
     points.push_back(PointOn(camera, TiltedPlane(), col, row));
   }
-  const std::vector<Plane> planes = MakePlanarPrior(camera, points, kRange);
+  const std::vector<Plane> planes = AsPublished(camera, points);
   EXPECT_EQ(CountPlanes(planes), 40 * 30);
   for (int row = 0; row < 30; ++row) {
     for (int col = 0; col < 40; ++col) {
@@ -52,7 +59,7 @@ TEST(PlanarPrior, PixelsOutsideTheTrianglesGetTheNearestPoints) {
       points.push_back(PointOn(camera, TiltedPlane(), col, row));
     }
   }
-  const std::vector<Plane> planes = MakePlanarPrior(camera, points, kRange);
+  const std::vector<Plane> planes = AsPublished(camera, points);
   EXPECT_EQ(CountPlanes(planes), 60 * 40);
   EXPECT_NEAR(
       DepthDifference(camera, planes[0], TiltedPlane(), 0, 0), 0, 2e-3f);
@@ -62,6 +69,20 @@ TEST(PlanarPrior, PixelsOutsideTheTrianglesGetTheNearestPoints) {
       2e-3f);
 }
 
+TEST(PlanarPrior, PixelsOutsideTheTrianglesMayStayWithout) {
+  const Camera camera = PriorCamera(60, 40);
+  std::vector<CrediblePoint> points;
+  for (int row = 15; row <= 25; row += 5) {
+    for (int col = 20; col <= 40; col += 5) {
+      points.push_back(PointOn(camera, TiltedPlane(), col, row));
+    }
+  }
+  const std::vector<Plane> planes =
+      MakePlanarPrior(camera, points, kRange, OutsideTriangles::kNothing);
+  EXPECT_EQ(CountPlanes(planes), 21 * 11);
+  EXPECT_GT(planes[20 * 60 + 30].distance, 0);
+}
+
 TEST(PlanarPrior, FewerThanSixPointsReachOnlyTheirTriangles) {
   const Camera camera = PriorCamera(20, 20);
   std::vector<CrediblePoint> points;
@@ -69,20 +90,20 @@ TEST(PlanarPrior, FewerThanSixPointsReachOnlyTheirTriangles) {
     points.push_back(PointOn(camera, TiltedPlane(), col, row));
   }
   // Half of a 10 x 10 square, its diagonal included.
-  EXPECT_EQ(CountPlanes(MakePlanarPrior(camera, points, kRange)), 55);
+  EXPECT_EQ(CountPlanes(AsPublished(camera, points)), 55);
 }
 
 TEST(PlanarPrior, DegeneratePointsGiveNoPlane) {
   const Camera camera = PriorCamera(20, 20);
-  EXPECT_EQ(CountPlanes(MakePlanarPrior(camera, {}, kRange)), 0);
+  EXPECT_EQ(CountPlanes(AsPublished(camera, {})), 0);
   std::vector<CrediblePoint> collinear;
   for (int i = 0; i < 8; ++i) {
     collinear.push_back(PointOn(camera, TiltedPlane(), 2 * i, 2 * i));
   }
-  EXPECT_EQ(CountPlanes(MakePlanarPrior(camera, collinear, kRange)), 0);
+  EXPECT_EQ(CountPlanes(AsPublished(camera, collinear)), 0);
   const std::vector<CrediblePoint> repeated(
       8, PointOn(camera, TiltedPlane(), 3, 3));
-  EXPECT_EQ(CountPlanes(MakePlanarPrior(camera, repeated, kRange)), 0);
+  EXPECT_EQ(CountPlanes(AsPublished(camera, repeated)), 0);
 }
 
 TEST(PlanarPrior, PlanesOutsideTheDepthRangeAreDropped) {
@@ -92,7 +113,7 @@ TEST(PlanarPrior, PlanesOutsideTheDepthRangeAreDropped) {
     points.push_back(PointOn(camera, TiltedPlane(), col, row));
   }
   const PriorRange narrow = {3.5f, 4.0f};
-  const std::vector<Plane> planes = MakePlanarPrior(camera, points, narrow);
+  const std::vector<Plane> planes = AsPublished(camera, points, narrow);
   EXPECT_GT(CountPlanes(planes), 0);
   EXPECT_LT(CountPlanes(planes), 40 * 30);
   for (int i = 0; i < 40 * 30; ++i) {

@@ -11,7 +11,7 @@ int main(int argc, char** argv) {
   // clang-format off
   table.add_options()
       ("name", po::value(&name)->required(),
-       "tilted_plane, depth_step, sphere or low_texture_wall (first word)")
+       "tilted_plane, depth_step, sphere, low_texture_wall or corridor (first word)")
       ("folder", po::value(&folder)->required(), "where the workspace goes (second word)")
       ("views", po::value(&options.num_views)->default_value(options.num_views), "images")
       ("width", po::value(&options.width)->default_value(options.width), "pixels")

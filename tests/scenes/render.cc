@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 namespace hpm {
 namespace {
@@ -14,6 +15,15 @@ Eigen::Matrix3d Rotation(const Camera& camera) {
 
 Eigen::Vector3d Translation(const Camera& camera) {
   return {camera.t.x, camera.t.y, camera.t.z};
+}
+
+// Of mean 0 and variance 1; the standard distributions differ between
+// libraries.
+float Normal(std::mt19937* generator) {
+  float sum = 0;
+  for (int i = 0; i < 12; ++i)
+    sum += static_cast<float>((*generator)()) / 4294967296.0f;
+  return sum - 6;
 }
 
 }  // namespace
@@ -55,6 +65,7 @@ RenderedView RenderView(const TestScene& scene, int view, int supersampling) {
   const Camera& camera = result.camera;
   result.truth = RenderTrueMaps(scene, camera, 0);
   result.grey.reserve(result.truth.depth.size());
+  std::mt19937 generator(view);
   for (int row = 0; row < camera.height; ++row) {
     for (int col = 0; col < camera.width; ++col) {
       float sum = 0;
@@ -65,7 +76,8 @@ RenderedView RenderView(const TestScene& scene, int view, int supersampling) {
         if (hit) sum += scene.texture.Grey(hit->point.cast<float>());
       }
       const float mean =
-          sum / static_cast<float>(supersampling * supersampling);
+          sum / static_cast<float>(supersampling * supersampling) +
+          scene.noise * Normal(&generator);
       result.grey.push_back(
           static_cast<uint8_t>(std::lround(std::clamp(mean, 0.0f, 255.0f))));
     }

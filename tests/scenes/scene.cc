@@ -36,6 +36,37 @@ TestScene Assemble(const SceneOptions& options,
           ArcCameras(options, kDistance, kArcDegrees)};
 }
 
+// The view-th camera; x lies level.
+Camera MakeCamera(const SceneOptions& options,
+                  int view,
+                  const Vector3d& center,
+                  const Vector3d& forward) {
+  const Vector3d right = Vector3d::UnitY().cross(forward).normalized();
+  Eigen::Matrix3d rotation;
+  rotation << right.transpose(), forward.cross(right).transpose(),
+      forward.transpose();
+  if (!options.quarter_turns.empty()) {
+    const int turns =
+        options.quarter_turns[view % options.quarter_turns.size()];
+    rotation =
+        Eigen::AngleAxisd(turns * M_PI / 2, Vector3d::UnitZ()) * rotation;
+  }
+  const Vector3d translation = -rotation * center;
+
+  Camera camera;
+  camera.width = options.width;
+  camera.height = options.height;
+  camera.fx = camera.fy = static_cast<float>(Focal(options));
+  camera.cx = 0.5f * static_cast<float>(options.width) - 0.5f;
+  camera.cy = 0.5f * static_cast<float>(options.height) - 0.5f;
+  for (int k = 0; k < 9; ++k)
+    camera.R.m[k] = static_cast<float>(rotation(k / 3, k % 3));
+  camera.t = {static_cast<float>(translation.x()),
+              static_cast<float>(translation.y()),
+              static_cast<float>(translation.z())};
+  return camera;
+}
+
 using Maker = TestScene (*)(const SceneOptions&);
 
 const std::vector<std::pair<std::string, Maker>>& Makers() {
@@ -43,7 +74,8 @@ const std::vector<std::pair<std::string, Maker>>& Makers() {
       {"tilted_plane", MakeTiltedPlane},
       {"depth_step", MakeDepthStep},
       {"sphere", MakeSphere},
-      {"low_texture_wall", MakeLowTextureWall}};
+      {"low_texture_wall", MakeLowTextureWall},
+      {"corridor", MakeCorridor}};
   return makers;
 }
 
@@ -63,30 +95,7 @@ std::vector<Camera> ArcCameras(const SceneOptions& options,
         distance * Vector3d(std::sin(azimuth) * std::cos(elevation),
                             std::sin(elevation),
                             -std::cos(azimuth) * std::cos(elevation));
-    const Vector3d forward = -center.normalized();
-    const Vector3d right = Vector3d::UnitY().cross(forward).normalized();
-    Eigen::Matrix3d rotation;
-    rotation << right.transpose(), forward.cross(right).transpose(),
-        forward.transpose();
-    if (!options.quarter_turns.empty()) {
-      const int turns = options.quarter_turns[i % options.quarter_turns.size()];
-      rotation =
-          Eigen::AngleAxisd(turns * M_PI / 2, Vector3d::UnitZ()) * rotation;
-    }
-    const Vector3d translation = -rotation * center;
-
-    Camera camera;
-    camera.width = options.width;
-    camera.height = options.height;
-    camera.fx = camera.fy = static_cast<float>(Focal(options));
-    camera.cx = 0.5f * static_cast<float>(options.width) - 0.5f;
-    camera.cy = 0.5f * static_cast<float>(options.height) - 0.5f;
-    for (int k = 0; k < 9; ++k)
-      camera.R.m[k] = static_cast<float>(rotation(k / 3, k % 3));
-    camera.t = {static_cast<float>(translation.x()),
-                static_cast<float>(translation.y()),
-                static_cast<float>(translation.z())};
-    cameras.push_back(camera);
+    cameras.push_back(MakeCamera(options, i, center, -center.normalized()));
   }
   return cameras;
 }
@@ -146,6 +155,34 @@ TestScene MakeRoom(const SceneOptions& options) {
                    PlaneSurface{1.1 * y, -y, {}},
                    SphereSurface{Vector3d(0.3, -0.1, -0.4), 0.35}},
                   texture);
+}
+
+TestScene MakeCorridor(const SceneOptions& options) {
+  // As of a photograph indoors. Without it the faintest texture would do.
+  constexpr float kCorridorNoise = 2.5f;
+  TextureOptions texture = TextureFor(options);
+  texture.balls = true;
+  texture.disc_spacing = 1.2;
+  texture.disc_radius = 0.25;
+  texture.plain_contrast = 0.5;
+  const Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY(),
+                 z = Vector3d::UnitZ();
+  TestScene scene = {{PlaneSurface{8 * z, -z, {}},
+                      PlaneSurface{-1.2 * x, x, {}},
+                      PlaneSurface{1.2 * x, -x, {}},
+                      PlaneSurface{-1.3 * y, y, {}},
+                      PlaneSurface{1.3 * y, -y, {}}},
+                     Texture(texture),
+                     {},
+                     kCorridorNoise};
+  for (int i = 0; i < options.num_views; ++i) {
+    const Vector3d center(0.35 * std::sin(1.7 * i),
+                          0.15 * std::cos(2.1 * i) - 0.15,
+                          0.45 * i - 8);
+    const Vector3d ahead(0.3 * std::sin(0.9 * i), 0, 10);
+    scene.cameras.push_back(MakeCamera(options, i, center, ahead.normalized()));
+  }
+  return scene;
 }
 
 const std::vector<std::string>& SceneNames() {

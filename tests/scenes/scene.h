@@ -25,6 +25,8 @@ struct TestScene {
   std::vector<Surface> surfaces;
   Texture texture;
   std::vector<Camera> cameras;
+  // Of every pixel on its own, standard deviation, grey values.
+  float noise = 0;
 };
 
 // Cameras on an arc of `arc_degrees` about the y axis at `distance` from the
@@ -43,6 +45,10 @@ TestScene MakeLowTextureWall(const SceneOptions& options);
 // at world z >= kBackWall, is plain but for discs, and a ball hangs before it.
 constexpr double kBackWall = 0.8;
 TestScene MakeRoom(const SceneOptions& options);
+
+// Along a corridor of plain walls, floor and ceiling with patches of texture;
+// the cameras walk down its middle, so that views see little parallax ahead.
+TestScene MakeCorridor(const SceneOptions& options);
 
 const std::vector<std::string>& SceneNames();
 // One of SceneNames(); throws Error(kUsage) for any other name.

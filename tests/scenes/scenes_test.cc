@@ -146,7 +146,8 @@ TEST_P(EveryScene, NormalsAreTheSlopeOfTheDepth) {
 }
 
 TEST_P(EveryScene, TextureSticksToTheSurface) {
-  const TestScene scene = MakeScene(GetParam(), SmallOptions());
+  TestScene scene = MakeScene(GetParam(), SmallOptions());
+  scene.noise = 0;
   const RenderedView from = RenderView(scene, 1);
   const RenderedView to = RenderView(scene, 2);
   double difference = 0, shifted_difference = 0;
@@ -203,6 +204,24 @@ TEST(Scenes, LowTextureWallIsPlainOverMoreThanAThirdAndTexturedInDiscs) {
   }
   EXPECT_GT(num_plain, num_windows / 3);
   EXPECT_GT(num_textured, num_windows / 10);
+}
+
+TEST(Scenes, NoiseIsOfEveryPixelOnItsOwn) {
+  TestScene scene = MakeTiltedPlane(SceneOptions());
+  const RenderedView clean = RenderView(scene, 0);
+  scene.noise = 2;
+  const RenderedView noisy = RenderView(scene, 0);
+  double sum = 0, square = 0, neighbours = 0;
+  const size_t size = clean.grey.size();
+  for (size_t at = 0; at + 1 < size; ++at) {
+    const double here = noisy.grey[at] - clean.grey[at];
+    sum += here;
+    square += here * here;
+    neighbours += here * (noisy.grey[at + 1] - clean.grey[at + 1]);
+  }
+  EXPECT_NEAR(sum / size, 0, 0.1);
+  EXPECT_NEAR(std::sqrt(square / size), 2, 0.2);
+  EXPECT_NEAR(neighbours / square, 0, 0.1);
 }
 
 TEST(Scenes, QuarterTurnRotatesThePicture) {

@@ -57,9 +57,12 @@ float Texture::Contrast(const Eigen::Vector3f& point) const {
   const auto radius = static_cast<float>(options_.disc_radius);
   const float dx = point.x() - spacing * std::round(point.x() / spacing);
   const float dy = point.y() - spacing * std::round(point.y() / spacing);
+  const float dz = options_.balls
+                       ? point.z() - spacing * std::round(point.z() / spacing)
+                       : 0;
   // Fades over the outer fifth of the disc.
-  const float inside =
-      std::clamp(5 * (1 - std::sqrt(dx * dx + dy * dy) / radius), 0.0f, 1.0f);
+  const float inside = std::clamp(
+      5 * (1 - std::sqrt(dx * dx + dy * dy + dz * dz) / radius), 0.0f, 1.0f);
   const auto plain = static_cast<float>(options_.plain_contrast);
   return plain + (contrast - plain) * inside;
 }

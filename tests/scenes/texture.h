@@ -20,6 +20,8 @@ struct TextureOptions {
   double disc_spacing = 0;
   double disc_radius = 0;
   double plain_contrast = 0;
+  // Balls around the points of a cubic lattice in place of the discs.
+  bool balls = false;
   // Discs, and plain between them, from this world z on only; before it
   // texture is everywhere.
   double disc_beyond = -std::numeric_limits<double>::infinity();
