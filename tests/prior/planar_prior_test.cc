@@ -26,6 +26,17 @@ std::vector<Plane> AsPublished(const Camera& camera,
       camera, points, range, OutsideTriangles::kNearestPoints);
 }
 
+// 5 x 3 points of the plane, of columns 20 to 40 and rows 15 to 25.
+std::vector<CrediblePoint> GridInTheMiddle(const Camera& camera) {
+  std::vector<CrediblePoint> points;
+  for (int row = 15; row <= 25; row += 5) {
+    for (int col = 20; col <= 40; col += 5) {
+      points.push_back(PointOn(camera, TiltedPlane(), col, row));
+    }
+  }
+  return points;
+}
+
 int CountPlanes(const std::vector<Plane>& planes) {
   int count = 0;
   for (const Plane& plane : planes) count += plane.distance > 0;
@@ -53,12 +64,7 @@ TEST(PlanarPrior, TrianglesOfAPlaneGiveThePlane) {
 
 TEST(PlanarPrior, PixelsOutsideTheTrianglesGetTheNearestPoints) {
   const Camera camera = PriorCamera(60, 40);
-  std::vector<CrediblePoint> points;
-  for (int row = 15; row <= 25; row += 5) {
-    for (int col = 20; col <= 40; col += 5) {
-      points.push_back(PointOn(camera, TiltedPlane(), col, row));
-    }
-  }
+  const std::vector<CrediblePoint> points = GridInTheMiddle(camera);
   const std::vector<Plane> planes = AsPublished(camera, points);
   EXPECT_EQ(CountPlanes(planes), 60 * 40);
   EXPECT_NEAR(
@@ -71,12 +77,7 @@ TEST(PlanarPrior, PixelsOutsideTheTrianglesGetTheNearestPoints) {
 
 TEST(PlanarPrior, PixelsOutsideTheTrianglesMayStayWithout) {
   const Camera camera = PriorCamera(60, 40);
-  std::vector<CrediblePoint> points;
-  for (int row = 15; row <= 25; row += 5) {
-    for (int col = 20; col <= 40; col += 5) {
-      points.push_back(PointOn(camera, TiltedPlane(), col, row));
-    }
-  }
+  const std::vector<CrediblePoint> points = GridInTheMiddle(camera);
   const std::vector<Plane> planes =
       MakePlanarPrior(camera, points, kRange, OutsideTriangles::kNothing);
   EXPECT_EQ(CountPlanes(planes), 21 * 11);
