@@ -81,6 +81,14 @@ class ScriptsTest(unittest.TestCase):
         _, failures = gate.judge(records({"a": 49.75, "b": 59.75, "c": 10.0}), accepted)
         self.assertEqual(failures, ["mean over scenes: f1 -0.25 ± 0.21"])
 
+        now = records({"a": 50.0, "b": 60.0})
+        self.assertEqual(gate.falling_figures(now, accepted), [])
+        now[0]["edges"] = dict(now[0]["edges"], **{"0.5%": 51.5, "1%": 48.0})
+        self.assertEqual(gate.falling_figures(now, accepted), [])  # the seeds lie further apart
+        for record in now[:3]:
+            record["edges"] = dict(record["edges"], **{"0.5%": 51.0, "1%": 49.0})
+        self.assertEqual(gate.falling_figures(now, accepted), ["a: edges 1% -1.0 ± 0.3"])
+
     def test_eta(self):
         table = output_of(sys.executable, BENCH / "eta.py", "--hpm_mvs", HPM_MVS, "--scene", self.scene,
                           "--out", self.out, "--", "--Hpm.num_iterations", 20)
