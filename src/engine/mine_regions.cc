@@ -151,6 +151,24 @@ std::vector<Pixel> LatticePixels(const WeakRegions& regions, int step) {
   return pixels;
 }
 
+// Of each region, by its label, the share of its pixels that are reliable.
+std::vector<float> AgreementOf(const WeakRegions& regions,
+                               const std::vector<Pixel>& pixels,
+                               const std::vector<ReliablePoint>& reliable) {
+  const auto count = [&](const auto& points) {
+    std::vector<int> counts(regions.num_regions + 1, 0);
+    for (const auto& point : points) ++counts[regions.At(point.col, point.row)];
+    return counts;
+  };
+  const std::vector<int> all = count(pixels);
+  const std::vector<int> agreeing = count(reliable);
+  std::vector<float> shares(all.size(), 0);
+  for (size_t label = 1; label < all.size(); ++label)
+    shares[label] = static_cast<float>(agreeing[label]) /
+                    static_cast<float>(std::max(1, all[label]));
+  return shares;
+}
+
 // The rims of the regions, and per pixel whether it lies in one, farther than
 // kRimWidth from anything else.
 struct Outlines {
@@ -242,11 +260,13 @@ MinedRegions MineRegions(const ViewSet& views,
                           map,
                           pixels);
   };
+  const std::vector<Pixel> lattice = LatticePixels(regions, step);
+  const std::vector<ReliablePoint> inside = reliable(lattice);
   Outlines outlines = OutlinesOf(regions);
   RegionPlanes planes =
       FindRegionPlanes(regions,
                        views.ref.camera,
-                       reliable(LatticePixels(regions, step)),
+                       inside,
                        reliable(outlines.rim),
                        step,
                        params.region_max_residual / Parallax(views),
@@ -264,7 +284,8 @@ MinedRegions MineRegions(const ViewSet& views,
     planes.of_region[label] = std::move(believed);
   }
   MinedRegions result = {Filled(map.planes.size(), Plane{{0, 0, 0}, 0}),
-                         std::move(outlines.inner)};
+                         std::move(outlines.inner),
+                         AgreementOf(regions, lattice, inside)};
   regions.ForEachBand([&](const Rows& rows) {
     for (int row = rows.begin; row < rows.end; ++row) {
       for (int col = 0; col < regions.width; ++col) {

@@ -13,13 +13,14 @@
 
 namespace hpm {
 
-// Both empty where there is no region without texture or no source has a depth
+// All empty where there is no region without texture or no source has a depth
 // map.
 struct MinedRegions {
   std::vector<Plane> priors;  // per pixel, distance 0: none
   // Per pixel: inside a region without texture, farther than kRimWidth from
   // anything else, and no believed plane explains it.
   std::vector<bool> unexplained;
+  std::vector<float> agreement;  // per label, the share on which views agree
 };
 
 // `regions` and `map` are the reference's. `key` identifies the pass in the

@@ -12,10 +12,16 @@ namespace {
 // So that what is asked at a time stays small in large images.
 constexpr int kRowsAtATime = 64;
 
+// Share of a region on which views agree.
+constexpr float kHalfFound = 0.5f;
+
 bool IsWithout(const WeakRegions& regions,
+               const std::vector<float>& agreement,
                const HypothesisMap& map,
                size_t at) {
-  return regions.label[at] > 0 && !(map.priors[at].distance > 0);
+  const int label = regions.label[at];
+  return label > 0 && agreement[label] < kHalfFound &&
+         !(map.priors[at].distance > 0);
 }
 
 // The depths of the map and what they cost in the views; of every second pixel,
@@ -53,10 +59,12 @@ LevelMap Judged(const ViewSet& views,
 
 void OfferTriangles(const ViewSet& views,
                     const WeakRegions& regions,
+                    const std::vector<float>& agreement,
                     const ScorePlanes& score,
                     HypothesisMap* map) {
   size_t first = 0;
-  while (first < map->priors.size() && !IsWithout(regions, *map, first))
+  while (first < map->priors.size() &&
+         !IsWithout(regions, agreement, *map, first))
     ++first;
   if (first == map->priors.size()) return;
   const std::vector<Plane> triangles = MakePlanarPrior(
@@ -65,7 +73,8 @@ void OfferTriangles(const ViewSet& views,
       {views.depth_min, views.depth_max},
       OutsideTriangles::kNothing);
   for (size_t at = first; at < triangles.size(); ++at)
-    if (IsWithout(regions, *map, at)) map->priors[at] = triangles[at];
+    if (IsWithout(regions, agreement, *map, at))
+      map->priors[at] = triangles[at];
 }
 
 }  // namespace hpm

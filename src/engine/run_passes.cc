@@ -116,7 +116,8 @@ void AskOtherViews(Backend* backend,
     map->priors = std::move(mined.priors);
     map->unexplained = std::move(mined.unexplained);
     SettleOnPriors(views, regions, params, map);
-    if (pass.triangles) OfferTriangles(views, regions, score, map);
+    if (pass.triangles)
+      OfferTriangles(views, regions, mined.agreement, score, map);
   }
 }
 

@@ -129,6 +129,18 @@ TEST_F(MineRegionsTest, WhatNoBelievedPlaneExplainsIsMarked) {
   EXPECT_EQ(MineAll().unexplained, std::vector<bool>(size, true));
 }
 
+// Not all of the region is seen by as many views as must agree.
+TEST_F(MineRegionsTest, AgreementIsTheShareOfARegionThatViewsAgreeOn) {
+  const std::vector<float> agreement = MineAll().agreement;
+  ASSERT_EQ(agreement.size(), 2u);
+  EXPECT_GT(agreement[1], 0.7f);
+  for (int row = 0; row < kHeight; row += 2) {
+    for (int col = 0; col < kWidth; ++col)
+      map_.planes[row * kWidth + col].distance *= 1.3f;
+  }
+  EXPECT_NEAR(MineAll().agreement[1], agreement[1] / 2, 0.02f);
+}
+
 // A roof below a sky: windows at the rim match best at the depth of the roof,
 // those of the sky itself match anywhere.
 TEST_F(MineRegionsTest, WindowsThatReachOverTheRimAreNoEvidence) {

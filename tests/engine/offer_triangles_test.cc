@@ -54,7 +54,7 @@ class OfferTrianglesTest : public testing::Test {
         costs.push_back(HasTexture(asked.row) ? best_cost : 1.0f);
       return costs;
     };
-    OfferTriangles(views_, regions_, score, &map_);
+    OfferTriangles(views_, regions_, {0, agreement_}, score, &map_);
   }
 
   void ExpectWall(int col, int row) const {
@@ -69,6 +69,7 @@ class OfferTrianglesTest : public testing::Test {
   ViewSet views_;
   WeakRegions regions_;
   HypothesisMap map_;
+  float agreement_ = 0.4f;  // on the plain wall
   int num_asked_ = 0;
 };
 
@@ -102,6 +103,12 @@ TEST_F(OfferTrianglesTest, WhatRegionsHaveFoundStays) {
 
 TEST_F(OfferTrianglesTest, NothingIsOfferedWhereNothingMatches) {
   Offer(/*best_cost=*/0.2f);
+  for (const Plane& prior : map_.priors) ASSERT_EQ(prior.distance, 0);
+}
+
+TEST_F(OfferTrianglesTest, NothingIsOfferedWhereViewsAgreeOnHalf) {
+  agreement_ = 0.6f;
+  Offer();
   for (const Plane& prior : map_.priors) ASSERT_EQ(prior.distance, 0);
 }
 
