@@ -10,7 +10,7 @@ namespace hpm {
 namespace {
 
 // Raise when the same options give other maps.
-constexpr int kAlgorithmVersion = 20;
+constexpr int kAlgorithmVersion = 21;
 
 // The pose as the reference sees it.
 void AddImage(const Workspace& workspace,

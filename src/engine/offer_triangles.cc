@@ -72,9 +72,14 @@ void OfferTriangles(const ViewSet& views,
       FindCrediblePoints(Judged(views, *map, score), kCredibleCost),
       {views.depth_min, views.depth_max},
       OutsideTriangles::kNothing);
-  for (size_t at = first; at < triangles.size(); ++at)
-    if (IsWithout(regions, agreement, *map, at))
-      map->priors[at] = triangles[at];
+  for (size_t at = first; at < triangles.size(); ++at) {
+    if (!(triangles[at].distance > 0) ||
+        !IsWithout(regions, agreement, *map, at))
+      continue;
+    map->priors[at] = triangles[at];
+    map->planes[at] = triangles[at];
+  }
+  map->Touch();
 }
 
 }  // namespace hpm

@@ -16,12 +16,13 @@
 
 namespace hpm {
 
-// Pixels of the regions without a prior take that of the triangle they lie in;
-// map->priors has a plane or none for every pixel. `agreement` is that of
-// MinedRegions: regions on half of which the views agree wait for the plane
-// that the next pass mines there. Outside the triangles there is none: the
-// paper's fill-in, the plane of the nearest points, carries a table over the
-// backdrop beside it.
+// Pixels of the regions without a prior take that of the triangle they lie in,
+// and start from it: what they have was found by chance, and a proposal must
+// match better than chance to be taken. map->priors has a plane or none for
+// every pixel. `agreement` is that of MinedRegions: regions on half of which
+// the views agree wait for the plane that the next pass mines there. Outside
+// the triangles there is none: the paper's fill-in, the plane of the nearest
+// points, carries a table over the backdrop beside it.
 void OfferTriangles(const ViewSet& views,
                     const WeakRegions& regions,
                     const std::vector<float>& agreement,

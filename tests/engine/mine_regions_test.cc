@@ -134,6 +134,7 @@ TEST_F(MineRegionsTest, AgreementIsTheShareOfARegionThatViewsAgreeOn) {
   const std::vector<float> agreement = MineAll().agreement;
   ASSERT_EQ(agreement.size(), 2u);
   EXPECT_GT(agreement[1], 0.7f);
+  EXPECT_LE(agreement[1], 1);
   for (int row = 0; row < kHeight; row += 2) {
     for (int col = 0; col < kWidth; ++col)
       map_.planes[row * kWidth + col].distance *= 1.3f;

@@ -58,12 +58,26 @@ class OfferTrianglesTest : public testing::Test {
   }
 
   void ExpectWall(int col, int row) const {
-    const Plane& prior = map_.priors[At(col, row)];
-    ASSERT_GT(prior.distance, 0) << col << " " << row;
-    EXPECT_NEAR(
-        DepthDifference(views_.ref.camera, prior, TiltedPlane(), col, row),
-        0,
-        1e-4f);
+    for (const auto* planes : {&map_.priors, &map_.planes}) {
+      const Plane& plane = (*planes)[At(col, row)];
+      ASSERT_GT(plane.distance, 0) << col << " " << row;
+      EXPECT_NEAR(
+          DepthDifference(views_.ref.camera, plane, TiltedPlane(), col, row),
+          0,
+          1e-4f);
+    }
+  }
+
+  void ExpectNothingOffered(int col, int row) const {
+    EXPECT_EQ(map_.priors[At(col, row)].distance, 0) << col << " " << row;
+    EXPECT_EQ(map_.planes[At(col, row)].distance, Near().distance);
+  }
+
+  void ExpectNothingOfferedAnywhere() const {
+    for (int row = 0; row < kHeight; ++row) {
+      if (HasTexture(row)) continue;
+      for (int col = 0; col < kWidth; ++col) ExpectNothingOffered(col, row);
+    }
   }
 
   ViewSet views_;
@@ -83,7 +97,7 @@ TEST_F(OfferTrianglesTest, NothingIsOfferedOutsideTheTriangles) {
   Offer();
   for (int col = 0; col < kWidth; ++col) {
     for (const int row : {0, kTop - 1, kBottom + kStrip, kHeight - 1})
-      EXPECT_EQ(map_.priors[At(col, row)].distance, 0) << col << " " << row;
+      ExpectNothingOffered(col, row);
   }
 }
 
@@ -98,18 +112,19 @@ TEST_F(OfferTrianglesTest, WhatRegionsHaveFoundStays) {
   map_.priors[At(kWidth / 2, 30)] = mined;
   Offer();
   EXPECT_EQ(map_.priors[At(kWidth / 2, 30)].distance, mined.distance);
+  EXPECT_EQ(map_.planes[At(kWidth / 2, 30)].distance, Near().distance);
   ExpectWall(kWidth / 2 + 1, 30);
 }
 
 TEST_F(OfferTrianglesTest, NothingIsOfferedWhereNothingMatches) {
   Offer(/*best_cost=*/0.2f);
-  for (const Plane& prior : map_.priors) ASSERT_EQ(prior.distance, 0);
+  ExpectNothingOfferedAnywhere();
 }
 
 TEST_F(OfferTrianglesTest, NothingIsOfferedWhereViewsAgreeOnHalf) {
   agreement_ = 0.6f;
   Offer();
-  for (const Plane& prior : map_.priors) ASSERT_EQ(prior.distance, 0);
+  ExpectNothingOfferedAnywhere();
 }
 
 TEST_F(OfferTrianglesTest, NothingIsAskedWhereAllIsExplained) {

@@ -226,6 +226,8 @@ TEST(Schedule, OnlyTheLastGeometricPassOfALevelVisitsAllPixels) {
 TEST(Schedule, TrianglesAreOfferedInTheFirstGeometricPassOnly) {
   for (const int num_levels : {1, 3}) {
     ScheduleOptions options = Options("hpm_plus", num_levels);
+    options.num_geom_passes = 3;
+    options.num_fine_geom_passes = 2;
     const Schedule schedule = MakeSchedule(options);
     for (size_t s = 0; s < schedule.stages.size(); ++s)
       EXPECT_EQ(schedule.stages[s].passes.back().triangles, s == 1) << s;
